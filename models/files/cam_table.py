@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Literal
 
-from pydantic import Field, StrictBool, model_validator
+from pydantic import Field, StrictBool, StrictInt, model_validator
 
 from models.errors import cut, few
 from models.files import schema
@@ -18,6 +18,7 @@ from models.scene.joints import less, sliding_body, turned
 from models.scene.pairs import CamPair, shared_point
 
 MOST_SEGMENTS, MOST_ROWS = 100, 100_000
+LEAST_FACETS, MOST_FACETS = 12, 10_000
 
 
 class SegmentTable(schema.Table):
@@ -58,7 +59,7 @@ def law_of(segments: Sequence[SegmentTable], *, turns: bool) -> CamLaw:
 class CamTable(schema.Table):
     """A cam and its follower: the body of a ``slider``, or a ``follower`` that is pinned to the
     ``carrier`` and has its roller, or its face, at the point ``tip``, to the right of the line from
-    its pivot to the cam, or to the ``left``."""
+    its pivot to the cam, or to the ``left``. With ``facets`` engines hold it by contact."""
 
     cam: Name
     slider: Name | None = None
@@ -72,6 +73,7 @@ class CamTable(schema.Table):
     clockwise: StrictBool = False
     start_deg: schema.Degrees = 0.0
     left: StrictBool = False
+    facets: Annotated[StrictInt, Field(le=MOST_FACETS)] = 0
     segments: Annotated[list[SegmentTable], Field(min_length=1, max_length=MOST_SEGMENTS)]
 
     @model_validator(mode="after")
@@ -80,6 +82,11 @@ class CamTable(schema.Table):
             raise ValueError("name what follows: slider = ..., or follower = ... and tip = ...")
         if (self.tip is None) != (self.follower is None):
             raise ValueError("tip is the point of a follower at its cam: give both, or a slider")
+        if self.facets != 0 and self.facets < LEAST_FACETS:
+            raise ValueError(
+                f"facets: found {self.facets}; give {LEAST_FACETS} or more for a cam by contact, "
+                "or 0 for a relation"
+            )
         return self
 
     def pair(
@@ -100,7 +107,8 @@ class CamTable(schema.Table):
         )
         joint = self.slider or "", self.tip or ""
         start = math.radians(self.start_deg)
-        return CamPair(name, self.cam, body, self.carrier, profile, *joint, side, start)
+        ends = name, self.cam, body, self.carrier, profile, *joint
+        return CamPair(*ends, side, start, self.facets)
 
     def _translating(
         self, points: Mapping[str, Mapping[str, Point]], sliders: Mapping[str, Slider]
@@ -141,6 +149,7 @@ def cam_table(pair: CamPair) -> Mapping[str, object]:
         **(face if any(face.values()) else {}),
         "clockwise": pair.sense < 0,
         "start_deg": schema.in_degrees(pair.start_rad),
+        **({"facets": pair.facets} if pair.facets else {}),
         "segments": [segment_table(one, turns=turns) for one in law.segments],
     }
 

@@ -125,6 +125,8 @@ def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str)
         lines.append(f"{pad}<body{attributes(place)}>")
         lines += _freedoms(scene, tree, limb, writing, pad + "  ")
         lines += _matter(scene, limb.body, pad + "  ")
+        soft = higher_pairs.touching(scene, limb.body, writing.connect)
+        lines += [f"{pad}  {each}" for each in soft]
         lines += _sites(scene, tree, limb.body, pad + "  ")
         lines += _children(scene, tree, writing, limb.body, pad + "  ")
         lines.append(f"{pad}</body>")

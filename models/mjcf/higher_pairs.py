@@ -6,16 +6,20 @@ the way to a body (`models.mjcf.forces`). Its length is the slip of the pitch ci
 loop and a mesh are alike in softness.
 
 A cam is an ``equality/joint``: a parabola through its law about the angle of the assembled state.
-The parabola is for that angle alone; a program has to set it anew at each step.
+The parabola is for that angle alone; a program has to set it anew at each step. By contact it is a
+chain of capsules along its facets, and the follower a sphere or a box, that touch nothing else.
 """
 
+import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 from models.errors import EngineError
 from models.mjcf.forces import sliding_joint, turning
-from models.mjcf.options import AttributeRow, attributes
+from models.mjcf.options import AttributeRow, Attributes, attributes
 from models.mjcf.tree import Limb, Tree
 from models.scene import Scene
+from models.scene.cam_contacts import follower_shape
 from models.scene.pairs import CamPair, Gear
 
 
@@ -46,12 +50,42 @@ def equalities(scene: Scene, tree: Tree) -> Iterator[str]:
     for gear in scene.gears.values():
         name = tendon_name(gear)
         yield f"    <tendon{attributes({'name': name, 'tendon1': name})}/>"
-    for pair in scene.cams.values():
+    for pair in as_relations(scene):
         relation = CamRelation(scene, tree, pair)
         row: AttributeRow = {"name": f"cam {pair.name}"}
         row |= {"joint1": relation.follower, "joint2": relation.cam}
         row["polycoef"] = relation.coefficients(relation.cam_ref)
         yield f"    <joint{attributes(row)}/>"
+
+
+def as_relations(scene: Scene) -> list[CamPair]:
+    """Return the cams that are held as a relation."""
+    return [pair for pair in scene.cams.values() if not pair.facets]
+
+
+def touching(scene: Scene, body: str, softness: Attributes) -> Iterator[str]:
+    """Write the shapes of a body for its cams by contact, as soft as loops with these attributes.
+    Raises EngineError as `follower_shape`."""
+    for k, pair in enumerate(scene.cams.values()):
+        if not pair.facets or body not in (pair.cam, pair.follower):
+            continue
+        shape = follower_shape(scene, pair)
+        own: AttributeRow = {"condim": 1} | dict(softness)
+        own["contype" if body == pair.cam else "conaffinity"] = 1 << k
+        if body == pair.cam:
+            for here, there in pairwise((*pair.outline, pair.outline[0])):
+                row: AttributeRow = {"fromto": (*here, 0.0, *there, 0.0), "size": shape.skin_m}
+                yield f"<geom{attributes(row | own)}/>"
+        elif shape.is_flat:
+            (x, y), (ux, uy) = shape.place, shape.away
+            off = shape.skin_m + shape.reach_m
+            row = {"type": "box", "pos": (x + off * ux, y + off * uy, 0.0)}
+            row["euler"] = (0.0, 0.0, math.atan2(-ux, uy))
+            row["size"] = (shape.reach_m, shape.reach_m, shape.reach_m)
+            yield f"<geom{attributes(row | own)}/>"
+        else:
+            row = {"type": "sphere", "pos": (*shape.place, 0.0), "size": shape.ball_m}
+            yield f"<geom{attributes(row | own)}/>"
 
 
 class CamRelation:

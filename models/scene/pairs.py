@@ -53,6 +53,10 @@ class CamPair:
     parallel of its face through the pivot. The tip lies to the right of the line from the pivot to
     the cam with ``side`` +1, and lifts turn it further. The law of ``profile`` begins at the angle
     ``start_rad`` of the cam against the carrier.
+
+    Engines hold it as a relation of the two or, with ``facets`` above 0, by contact of the follower
+    with the ``outline``: as many points of the profile in the frame of the cam's link [m], in the
+    order of its law (`analytic.cams.outline`).
     """
 
     name: str
@@ -64,6 +68,8 @@ class CamPair:
     tip: str = ""
     side: int = 1
     start_rad: float = 0.0
+    facets: int = 0
+    outline: tuple[tuple[float, float], ...] = ()
 
     @property
     def sense(self) -> int:

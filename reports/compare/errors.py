@@ -14,6 +14,27 @@ from reports.quantities.limits import BENDING, DEFAULTS
 from reports.quantities.quantity import BodyKind, Source, Tolerance, tolerance_name
 from sim.engine import AT_ROUNDING
 
+FACETED, STEPPED = 3.0, 3.0
+"""Factors of the errors of cams by contact, by facets and by steps: observed are up to half."""
+
+
+@dataclass(frozen=True)
+class FacetFacts:
+    """Facets of a cam, as pure numbers: ``sagitta`` of the profile over a facet, ``corner``, by
+    which the follower's speed changes from one facet to the next, and the acceleration ``closing``
+    the contact by springs, weights and loads."""
+
+    sagitta: float
+    corner: float
+    closing: float
+
+    def error(self, rate: int, step_rad: float) -> float:
+        """Return the pure error of a rate of this order. A follower flies over each corner, and
+        lands within a step; accelerations are those of impacts, and have no limit."""
+        flight = 0.5 * self.corner**2 / self.closing if self.closing > 0.0 else 0.0
+        faceted = (self.sagitta + flight, self.corner, math.inf)[rate]
+        return FACETED * faceted + STEPPED * self.closing * step_rad ** (2 - rate)
+
 
 @dataclass(frozen=True)
 class SceneFacts:
@@ -31,8 +52,9 @@ class SceneFacts:
     samples is near a change point. ``uneven`` is the departure of bodies from even motion with the
     driver, ``uneven_rates`` those of them whose rates depart too (`reports.compare.hardness`).
     ``floor`` is the pure error that rounding leaves in the engine (`sim.engine.Engine`).
-    ``law_jumps`` are the largest jumps of acceleration and jerk in the laws of cams, pure, and
-    ``parting`` is the acceleration with which loads would part its gears and cams at the start.
+    ``law_jumps`` are the largest jumps of acceleration and jerk in the laws of cams, pure;
+    ``parting`` is the acceleration with which loads would part its gears and cams at the start, and
+    ``facets`` the facts of cams by contact.
     """
 
     curvature: float
@@ -49,6 +71,7 @@ class SceneFacts:
     floor: float = AT_ROUNDING
     law_jumps: tuple[float, float] = (0.0, 0.0)
     parting: float = 0.0
+    facets: FacetFacts | None = None
 
     def jumping(self, rate: int) -> float:
         """Return the pure error of a rate of this order in and beside the jumps of laws of cams: a

@@ -14,10 +14,14 @@ from typing import TypeVar, TypeVarTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.forces.virtual_power import reduced_machine
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Crossing, Motion
 from models.scene import Scene, driver, joints, loads
+from models.scene.cams import OscillatingFollower
+from models.scene.pairs import CamPair
+from reports.compare.errors import FacetFacts
 from reports.compare.tracks import length
 from reports.quantities.quantity import BodyKind
 
@@ -215,6 +219,43 @@ def law_jumps(scene: Scene, reference: Motion) -> tuple[float, float]:
         ]
     accelerations, jerks = zip(*found, strict=True)
     return max(accelerations), max(jerks)
+
+
+@shared
+def facets(scene: Scene, reference: Motion) -> FacetFacts | None:
+    """Return the facts of the cams by contact, of the worst; None where there is none."""
+    found = [_facets(scene, pair, reference) for pair in scene.cams.values() if pair.facets]
+    return max(found, key=lambda one: one.sagitta, default=None)
+
+
+def _facets(scene: Scene, pair: CamPair, reference: Motion) -> FacetFacts:
+    """Return the facts of a cam."""
+    follower, pace = pair.profile.follower, scene.pace_rad_s
+    centre = joints.local_point(scene, pair.cam, pair.pivots(scene.points_of)[0])
+    length, arm = scene.longest_m, scene.longest_m
+    if isinstance(follower, OscillatingFollower):
+        length, arm = 1.0, follower.arm_m or follower.pivot_m
+    radius = max(math.dist(centre, point) for point in pair.outline) / arm
+    side = math.tau / pair.facets
+    turning = _largest(np.abs(reference.links[pair.cam].omega)) / pace
+    press = _closing(scene, pair, reference) / (length * pace**2)
+    return FacetFacts(side**2 / 8.0 * radius, side * radius * turning, press)
+
+
+def _closing(scene: Scene, pair: CamPair, reference: Motion) -> float:
+    """Return the largest acceleration towards the cam [m/s^2 or rad/s^2] that springs, weights and
+    loads give a follower and all that it moves, while it is fast: by the machine reduced to the
+    driver, with the rate s' of the lift, M s' over the inertia beyond the least."""
+    if scene.is_free:
+        return 0.0
+    carrier = reference.links.get(pair.carrier)
+    base = np.zeros_like(reference.time_s) if carrier is None else carrier.theta
+    lift = pair.profile.law.at(pair.law_angle(reference.links[pair.cam].theta, base)).value
+    machine = reduced_machine(scene, reference.time_s)
+    rate = np.gradient(lift, machine.theta)
+    moved = machine.inertia - np.nanmin(machine.inertia)
+    fast = (np.abs(rate) > 0.5 * np.nanmax(np.abs(rate))) & (moved > 0.0)
+    return _largest(-machine.torque[fast] * rate[fast] / moved[fast])
 
 
 WINDOW_RAD = 0.5

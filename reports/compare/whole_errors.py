@@ -17,6 +17,7 @@ from reports.compare import error_rows, errors
 from reports.compare.compare import Beside
 from reports.compare.hardness import (
     curvature,
+    facets,
     inertia_share,
     law_jumps,
     load_slopes,
@@ -251,6 +252,7 @@ def whole_errors(beside: Beside, at: error_rows.Instants, parts: ComparedParts) 
             floor=run.floor,
             law_jumps=law_jumps(scene, beside.whole),
             parting=parting(scene, beside.whole),
+            facets=facets(scene, beside.whole),
         ),
         of_forces=borne.facts,
         of_motion=parts.motion,

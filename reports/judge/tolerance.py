@@ -32,6 +32,10 @@ sensitivity does not grow as fast: with a motor that keeps the speed. Where the 
 the start, in which engines open them by the arc of a step, they take a share of the energy: this
 adds ``opening`` of that to the phase error.
 
+The profile of a cam by contact has facets: their sagitta and the flights over their corners are no
+engine's fault, and have no cap; its follower sinks in by what closes it in a step, or flies as far
+(`reports.compare.errors.FacetFacts`).
+
 Where the law of a cam jumps in acceleration or jerk, a step over the jump has some of either side:
 accelerations are off by up to that of the acceleration, and by half of what the jerk's changes in
 a step.
@@ -140,8 +144,11 @@ def _felt(tolerance: Tolerance, errors: Errors) -> float:
 
 
 def beyond_engine(name: str, errors: Errors) -> float:
-    """Return the model error of an engine's links, as a pure number of a quantity."""
-    links = errors.of_links
+    """Return the model error of an engine's links and cams, as a pure number of a quantity."""
+    links, facets, tolerance = errors.of_links, errors.of_scene.facets, errors.limits[name]
+    if facets is not None and name != "drive":
+        rate = max(tolerance.rate, tolerance.differenced)
+        return facets.error(rate, errors.of_scene.step_rad)
     own, segments = links.beyond(name), links.limits.get("segments")
     if name in FORCES and segments:  # a relative error of bending is one of the force
         return own + 0.5 * (default(segments, errors) + links.locked)

@@ -30,6 +30,7 @@ class StudyChoice:
     duration_s: float | None = None
     segments: Sequence[int] = ()
     springs: Sequence[str] = ()
+    facets: Sequence[int] = ()
 
 
 def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Study:
@@ -72,6 +73,7 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
             "forces": study.forces or choice.forces,
             "segments": list(choice.segments) or study.segments,
             "springs": list(choice.springs) or study.springs,
+            "facets": list(choice.facets) or study.facets,
             **(_free_lines(study, choice) if study.free or choice.free else _driven(study, choice)),
         }
     )

@@ -9,11 +9,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from models.errors import CrankcheckError, few
+from models.files.assemble import scene_text
 from models.files.reading import names_of_scenes, scene_texts, shipped
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
-from reports.plan.requirements import refuse_rigid, scenes_of
+from reports.plan.requirements import by_contact, refuse_rigid, scenes_of
 from reports.plan.singular import gives_forces
 from reports.plan.study import UNITS, Study, Variant
 from reports.protocol.length import GivenAs, Planned
@@ -64,6 +65,8 @@ def grid(study: Study) -> Grid:
     refuse_endless(study)
     scenes = scenes_of(study.scenes, free=study.free)
     texts = scene_texts(study.scenes)
+    scenes = by_contact(scenes, study.facets, "--facets")
+    texts |= {scene.name: scene_text(scene) for scene in scenes if scene.name not in texts}
     refuse_rigid(scenes, study.segments or None, study.springs or None)
     variants = [one for variant in study.variants for one in variant.each()]
     adapters = [engine(name) for name in dict.fromkeys(variant.engine for variant in variants)]
@@ -119,7 +122,7 @@ def refuse_endless(study: Study) -> None:
         {name: len(values) for name, values in variant.lists.items() if len(values) > 1}
         for variant in study.variants
     ]
-    bent = max(len(study.segments), 1) * max(len(study.springs), 1)
+    bent = max(len(study.segments), 1) * max(len(study.springs), 1) * max(len(study.facets), 1)
     numbers = [min(math.prod(each.values()), ENDLESS) for each in lists]
     if (cells := scenes * sum(numbers) * steps * bent) > MOST_CELLS:
         largest = lists[numbers.index(max(numbers))]

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analytic.cams.outline import outlined
 from analytic.free.free_motion import loosened
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, EngineError, nearest, shown
 from models.files import reading
+from models.files.cam_table import LEAST_FACETS, MOST_FACETS
 from models.files.inputs import names_in
 from models.files.reading import kinds, shipped
 from models.scene import Scene
@@ -47,7 +50,7 @@ def chosen_scenes(
     """
     scenes: dict[str, Scene] = {}
     for name in reading.names_of_scenes(names) or reading.shipped():
-        scene = reading.load_scene(name)
+        scene = outlined(reading.load_scene(name))
         (check or refuse_unfollowed)(scene)
         if scenes.setdefault(scene.name, scene) != scene:
             raise CrankcheckError(
@@ -269,6 +272,29 @@ def given_of(scenes: Iterable[Scene], segments: int | None, springs: str | None)
     `refuse_rigid`, `chosen_segments` and `chosen_springs`."""
     refuse_rigid(scenes, segments, springs)
     return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))
+
+
+def by_contact(scenes: Iterable[Scene], counts: Sequence[int], option: str) -> list[Scene]:
+    """Return the scenes with their cams by contact, under a name of its own for each number of
+    facets; as they are for none. Raises CrankcheckError where no scene has a cam, for a number out
+    of range, and as `outlined`."""
+    every = list(scenes)
+    if not counts:
+        return every
+    for count in counts:
+        if not LEAST_FACETS <= count <= MOST_FACETS:
+            raise CrankcheckError(
+                f"{option}: found {count}; a cam by contact has {LEAST_FACETS} to {MOST_FACETS}"
+            )
+    if not any(scene.cams for scene in every):
+        raise CrankcheckError(f"{option}: it is of cams, and no scene has one; leave {option} out")
+    return [
+        replace(outlined(scene, count), name=f"{scene.name}-{count}-facets")
+        if scene.cams
+        else scene
+        for scene in every
+        for count in (dict.fromkeys(counts) if scene.cams else [0])
+    ]
 
 
 def rigid_alone(what: str) -> Callable[[Scene], None]:

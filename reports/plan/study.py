@@ -103,6 +103,7 @@ class Study(BaseModel):
     segments: list[StrictInt] = Field(default_factory=list)
     springs: list[Literal["plain", "corrected", "beam"]] = Field(default_factory=list)
     times_held: list[float] = Field(default_factory=list)
+    facets: list[StrictInt] = Field(default_factory=list)
 
     @property
     def lists(self) -> tuple[str, ...]:

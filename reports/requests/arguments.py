@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 import numpy as np
 
+from analytic.cams.outline import outlined
 from models.errors import CrankcheckError, shown, suggestion
 from models.files.reading import every_shipped, load_scene
 from models.scene import KEPT, Scene
@@ -37,13 +38,13 @@ SceneLike = Scene | str | PathLike[str]
 def scene_of(scene: SceneLike) -> Scene:
     """The scene of an argument. Raises CrankcheckError as `load_scene`, and for other values."""
     if isinstance(scene, Scene):
-        return scene
+        return outlined(scene)
     if isinstance(scene, str) and scene in every_shipped():
-        return _shipped(scene)
+        return outlined(_shipped(scene))
     if not isinstance(scene, str | PathLike):
         cure = "give a shipped name, the path of a scene file, or a Scene"
         raise wrong_kind("scene", scene, cure)
-    return load_scene(scene)
+    return outlined(load_scene(scene))
 
 
 @lru_cache(maxsize=KEPT)

@@ -73,6 +73,9 @@ SpringKind = Annotated[
         "--springs",
     ),
 ]
+Facets = Annotated[
+    int | None, option("Cams by contact, of so many facets; default: as the scene says.", "N")
+]
 Jobs = Annotated[int, option("Processes; 0: one per processor.", min=0, max=1024)]
 PaperSize = Annotated[str, option("A5, A4, A3, A2, or WIDTHxHEIGHT in mm.", "SIZE")]
 
@@ -216,6 +219,7 @@ class VerifyOptions:
     duration_s: Duration = None
     segments: SegmentCount = None
     springs: SpringKind = None
+    facets: Facets = None
     mjcf: Annotated[
         Path | None,
         of_model("A MuJoCo model, run as it is; needs --drive JOINT and --speed.", "FILE"),

@@ -16,7 +16,7 @@ from models.scene import Scene
 from reports.compare.free_truth import released_state
 from reports.output import formats, write
 from reports.output.console import print_each, say, say_each, say_whole
-from reports.plan.requirements import given_of, under_control
+from reports.plan.requirements import by_contact, given_of, under_control
 from reports.protocol.length import SEGMENTS, GivenAs, Length, Planned, Springs
 from reports.protocol.way import way, way_of
 from reports.requests import arguments, options, shown, solution
@@ -107,11 +107,14 @@ class RunRequest:
     forces: options.Forces = False
     segments: options.SegmentCount = None
     springs: options.SpringKind = None
+    facets: options.Facets = None
     settings: Mapping[str, SettingValue] | None = None
 
     def answer(self) -> Simulation:
         """The run, logged. Raises CrankcheckError for a faulty request, before the run."""
+        facets = [] if self.facets is None else [self.facets]
         scene = under_control(arguments.scene_of(self.scene))
+        (scene,) = by_contact([scene], facets, "--facets")
         engine = FIRST if self.engine is None else self.engine
         name, profile = arguments.engine_of(engine, self.profile, self.settings)
         drive = _drive(scene, self.drive)
@@ -203,6 +206,7 @@ def run(
     forces: bool = False,
     segments: int | None = None,
     springs: str | None = None,
+    facets: int | None = None,
 ) -> Simulation:
     """Run a scene in an engine and log it.
 
@@ -234,6 +238,8 @@ def run(
         Engine's model of elastic links: so many rigid segments each (16), with springs between them
         that are ``plain``, or ``corrected`` for the sag of the beam; or, with ``beam``, as many
         elements of the engine's own beam.
+    facets : int or None
+        Cams by contact, with so many facets; None: as the scene says.
 
     Returns
     -------

@@ -88,6 +88,7 @@ def sweep(
     duration_s: float | None = None,
     segments: int | Iterable[int] = (),
     springs: str | Iterable[str] = (),
+    facets: int | Iterable[int] = (),
 ) -> Sweep:
     """Run a grid of scenes, engines, settings and steps into a folder, as `crankcheck sweep` does.
 
@@ -131,6 +132,8 @@ def sweep(
         Duration of free motion [s]; the scene's for None.
     segments, springs : int or Iterable[int], str or Iterable[str]
         Engines' model of elastic links, as in `run`; () for those of the study.
+    facets : int or Iterable[int]
+        Cams by contact, of so many facets; () for those of the study, or as the scenes say.
 
     Raises
     ------
@@ -162,6 +165,7 @@ def sweep(
             None if duration_s is None else positive("--duration", duration_s, "seconds"),
             [chosen_segments(count) for count in arguments.each_of(segments)],
             [chosen_springs(text) for text in names_in(springs, "springs")],
+            [arguments.whole_of(count, "--facets") for count in arguments.each_of(facets)],
         )
         asked = chosen_study(told, choice, is_shipped=study is None)
         console = terminal(stderr=True)
@@ -203,6 +207,9 @@ class SweepRequest:
         str | None, option("Of each elastic link, with commas (default 16).", "N,N,...")
     ] = None
     springs: options.SpringKind = None
+    facets: Annotated[
+        str | None, option("Cams by contact, of so many facets, with commas.", "N,N,...")
+    ] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Run the cells of the study that are not done yet; return the exit code, 0.
@@ -258,6 +265,7 @@ def asked(request: SweepRequest) -> Study:
             for each in (request.springs or "").split(",")
             if each.strip()
         ],
+        _numbers("--facets", request.facets, int, "whole numbers", "90,360,1440"),
     )
     return chosen_study(study, choice, is_shipped=request.study is None)
 

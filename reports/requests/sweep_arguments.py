@@ -126,6 +126,7 @@ def command_of(choice: chosen_study.StudyChoice, folder: Path, study: object) ->
         *(("--duration", f"{choice.duration_s:g}") if choice.duration_s is not None else ()),
         *(("--segments", ",".join(map(str, choice.segments))) if choice.segments else ()),
         *(("--springs", ",".join(choice.springs)) if choice.springs else ()),
+        *(("--facets", ",".join(map(str, choice.facets))) if choice.facets else ()),
     ]
     for owner, chosen in choice.overrides.items():
         for name, values in chosen.items():

@@ -102,7 +102,8 @@ def plan(request: VerifyOptions) -> list[Cell]:
     limits = tolerance.parse(request.tolerance)
     if not request.forces:
         tolerance.refuse_forces_unasked("--tol", limits)
-    scenes = _scenes(request)
+    facets = [] if request.facets is None else [request.facets]
+    scenes = requirements.by_contact(_scenes(request), facets, "--facets")
     _refuse_options(request, scenes)
     tolerance.refuse_of_other_kinds("--tol", limits, (way_of(scene).limits for scene in scenes))
     engines = requirements.chosen_engines(request.engines)

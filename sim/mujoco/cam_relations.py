@@ -13,7 +13,7 @@ from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 
-from models.mjcf.higher_pairs import CamRelation
+from models.mjcf.higher_pairs import CamRelation, as_relations
 from models.mjcf.tree import Tree
 from models.scene import Scene
 
@@ -24,7 +24,7 @@ class CamRelations:
     def __init__(self, scene: Scene, tree: Tree, model: Any, dt_s: float) -> None:
         self._dt = dt_s
         self._cams = []
-        for pair in scene.cams.values():
+        for pair in as_relations(scene):
             relation = CamRelation(scene, tree, pair)
             row = int(model.equality(f"cam {pair.name}").id)
             joint = int(model.joint(relation.cam).qposadr[0])

@@ -32,7 +32,7 @@ RANGES = {
     "free_inverse_weight_share": (1e-12, 1.0),
 }
 """Ranges in MuJoCo, which silently clips impedances to these."""
-MORE_ITERATIONS = {"friction": 20, "springs": 20, "free_weight_share": 4}
+MORE_ITERATIONS = {"friction": 20, "springs": 20, "contact": 20, "free_weight_share": 4}
 """Iterations by cause, beyond those of pins as stiff as by the compiled weights."""
 OF_IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
 OF_LOOPS = ("solref_timeconst_s", "solref_dampratio", *OF_IMPEDANCE)
@@ -141,7 +141,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
             "iterations": _iterations(scene, settings, drive)[0],
             "tolerance": float(held["tolerance"]),
         },
-        flag={"island": str(settings["islands"]), "contact": str(settings["contact"])},
+        flag={"island": str(settings["islands"]), "contact": contact_of(scene, settings)},
         connect={"solref": (float(held["solref_timeconst_s"]), damping), "solimp": solimp},
         rubbing={"solref": (float(driven["solref_timeconst_s"]), damping), "solimp": solimp},
         flywheel_ratio=float(settings["flywheel_ratio"]),
@@ -155,17 +155,29 @@ def _iterations(scene: Scene, settings: Settings, drive: Drive) -> tuple[int, st
     """Return the iterations of the settings, or more where a cause needs them, and the cause.
 
     Pins give a quadratic problem. Friction: its choice of two signs makes the problem more than
-    quadratic. Springs: the integrator `discrete` solves inertia and stiffness together by conjugate
-    gradients, as many of them as there are iterations, and gives the run up where they do not
-    converge. Lower weights in free motion: the rounding of the first passes remains in so stiff a
-    problem.
+    quadratic. Contact: so does its choice to push or not. Springs: the integrator `discrete` solves
+    inertia and stiffness together by conjugate gradients, as many of them as there are iterations,
+    and gives the run up where they do not converge. Lower weights in free motion: the rounding of
+    the first passes remains in so stiff a problem.
     """
     cause = "free_weight_share" if weight_share(scene, settings, drive) != 1 else ""
     if scene.friction:
         cause = "friction"
+    elif touches(scene):
+        cause = "contact"
     elif scene.springs and integrator(settings, drive) == "discrete":
         cause = "springs"
     return max(int(settings["iterations"]), MORE_ITERATIONS.get(cause, 0)), cause
+
+
+def touches(scene: Scene) -> bool:
+    """True if a cam is held by contact."""
+    return any(pair.facets for pair in scene.cams.values())
+
+
+def contact_of(scene: Scene, settings: Settings) -> str:
+    """Return the setting of contact, which cams by contact need."""
+    return "enable" if touches(scene) else str(settings["contact"])
 
 
 def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
@@ -186,6 +198,8 @@ def held(
     of the bodies' inverse weights to the compiled ones."""
     given, cause = _iterations(scene, settings, drive)
     told = as_held("iterations", int(settings["iterations"]), given, iterations, cause)
+    contact, cams = contact_of(scene, settings), "cams" if touches(scene) else ""
+    told |= as_held("contact", str(settings["contact"]), contact, contact, cams)
     if drive != "free":
         return told
     asked, scaled = settings["free_inverse_weight_share"], weight_share(scene, settings, drive)

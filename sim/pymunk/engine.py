@@ -19,6 +19,7 @@ from sim.pymunk import settings as own
 from sim.pymunk.acting import SpaceActing
 from sim.pymunk.arcs import Arcs
 from sim.pymunk.bodies import FIELDS, WIDTH, chain_springs, rows_of
+from sim.pymunk.cam_contacts import correct
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import driven_joint
 from sim.pymunk.native import moves_freely
@@ -56,6 +57,9 @@ class PymunkSession:
         self._space.damping = float(settings["damping"])
         for constraint in self._space.constraints:
             constraint.error_bias = float(settings["error_bias"])
+        self._touches = bool(self._space.shapes)
+        if self._touches:
+            correct(self._space, float(settings["error_bias"]))
         law = scene.driver.law
         inner = scene.driver.is_inner and drive == "prescribed"
         self._coasts = drive == "free" or (isinstance(law, laws.ConstantSpeed) and not inner)
@@ -90,6 +94,7 @@ class PymunkSession:
                 **as_held("iterations", asked, self._iterations, int(space.iterations), cause),
                 "damping": float(space.damping),
                 **({"error_bias": biases.pop()} if len(biases) == 1 else {}),
+                **({"collision_slop_of_cams": space.collision_slop} if self._touches else {}),
             },
             velocity_shift=VELOCITY_SHIFT,
             acceleration_shift=0.0,
@@ -239,4 +244,5 @@ ENGINE = Engine(
     applies_springs=True,
     applies_gears=True,
     applies_cams=True,
+    applies_touching_cams=True,
 )

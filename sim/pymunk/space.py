@@ -1,5 +1,5 @@
-"""The pymunk space of a scene: a body per link, joints as constraints, no shapes;
-and a point on a line where the groove joint is in error.
+"""The pymunk space of a scene: a body per link, joints as constraints, shapes for cams by contact
+alone; and a point on a line where the groove joint is in error.
 
 Bodies have their origin at the centre of gravity, as Chipmunk needs it. A driven crank is a
 kinematic body on its pivot. A massless slider block is a groove for the point of its link. A body
@@ -28,6 +28,7 @@ from models.scene.joints import Prism, Slot, turned
 from sim.engine import Drive
 from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 from sim.pymunk import native
+from sim.pymunk.cam_contacts import add_contact
 from sim.pymunk.cam_lines import CamLine
 from sim.pymunk.meshes import mesh
 
@@ -134,7 +135,11 @@ def build(
             gears[name] = _gear(placed, slide)
         _add(placed, lines[name], gears.get(name))
     _add(placed, *(mesh(placed, gear) for gear in scene.gears.values()))
-    _add(placed, *(CamLine(scene, placed, cam, dt_s).joint() for cam in scene.cams.values()))
+    for k, cam in enumerate(scene.cams.values()):
+        if cam.facets:
+            add_contact(placed, cam, k)
+        else:
+            _add(placed, CamLine(scene, placed, cam, dt_s).joint())
     rubs = native.pin_friction(placed)
     springs = native.native_springs(placed, _reach(scene)) if with_springs else {}
     _add(placed, *(one.motor for one in rubs), *(one.constraint for one in springs.values()))

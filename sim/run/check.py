@@ -23,6 +23,10 @@ ROUNDINGS = 16.0
 """Units of the last place of an engine's numbers that both of these allow at least."""
 
 
+KEYS = {"cams by contact": "touching_cams"}
+"""Keys of engines' properties, where they are not the words."""
+
+
 class OtherModelError(EngineError):
     """An engine that holds another model or start than was requested."""
 
@@ -82,18 +86,31 @@ def refuse_unknown_forces(
                 f"{scene.name}: {engine.name} is given no {what} ({names}); take them out to run "
                 "it, or use the reference alone"
             )
+    touching = [name for name, pair in scene.cams.items() if pair.facets]
     segments = "links that do not stretch as rigid segments with springs (--springs plain)"
     for what, given, applied, cure in (
         ("beams", scene.beams, engine.applies_beams, f"give it {segments}"),
         ("gears", scene.gears, engine.applies_gears, "run one of those"),
         ("cams", scene.cams, engine.applies_cams, "run one of those"),
+        ("cams by contact", touching, engine.applies_touching_cams, "give it facets = 0"),
     ):
         if given and not applied:
-            able = " or ".join(applying(what)) or "no engine here"
+            able = " or ".join(applying(KEYS.get(what, what))) or "no engine here"
             raise EngineError(
                 f"{scene.name}: {what} ({', '.join(given)}) in {engine.name} are not offered by "
                 f"crankcheck, but in {able}; {cure}"
             )
+    for name, pair in scene.cams.items():
+        if any(jump.lift or jump.velocity for jump in pair.profile.law.jumps):
+            raise EngineError(
+                f"{scene.name}: the velocity of the law of cams.{name} jumps, an acceleration "
+                "without end, which no engine follows; give a law of continuous velocity"
+            )
+    if touching and with_forces:
+        raise EngineError(
+            f"{scene.name}: a cam by contact presses on its follower at the contact, and the "
+            f"reference along its way; run {engine.name} without forces, or with facets = 0"
+        )
     if isinstance(scene.driver.law, driver.Controlled):
         raise EngineError(
             f"{scene.name}: its driver is controlled, and {engine.name} is given none that gives "

@@ -94,6 +94,8 @@ class ErrorSmooth:
         errors = evidence.errors
         if errors is None or evidence.status != "ok" or errors.of_scene.step_rad > DENSE_RAD:
             return None
+        if errors.of_scene.facets is not None:  # a follower bounces at each corner
+            return None
         found = _roughest(errors)
         if found is None:
             return None

@@ -2,6 +2,7 @@
 
 from reports.stability.catalogue import change_points
 from reports.stability.catalogue.bodies import MASSES, SCALES, STARTS
+from reports.stability.catalogue.cams import CAMS
 from reports.stability.catalogue.driving import AT_LIMITS, DRIVING, DURATION, NEAR_LIMITS, STEPPING
 
 CASES = {
@@ -17,4 +18,5 @@ CASES = {
     "duration": DURATION,
     "step and solver": STEPPING,
     "slotted lever, crank through the pivot": change_points.LEVERS,
+    "cams by contact": CAMS,
 }

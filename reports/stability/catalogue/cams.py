@@ -1,0 +1,61 @@
+"""Cams by contact: the speed at which a follower leaves its cam."""
+
+from functools import cache, partial
+
+from analytic.cams.contact_force import FollowerLoad, lift_off
+from analytic.cams.outline import outlined
+from models.scene import Scene, hard
+from models.scene.loads import SlideSpring
+from reports.stability.case import Case, Trial
+
+STEPS, FACETS = 2000.0, 720
+OPEN = 4e-4
+"""Opening over the longest link beyond which a follower has left: at lower speeds it flies over the
+corners of the facets by a third of that."""
+
+
+@cache
+def _cam(speed_rad_s: float) -> Scene:
+    scene = hard.sprung_cam("sprung-cam", source="made up", speed_rad_s=speed_rad_s, facets=FACETS)
+    return outlined(scene)
+
+
+@cache
+def lift_off_rad_s() -> float:
+    """Return the speed at which the follower of the cases leaves by the closed form."""
+    scene = _cam(1.0)
+    pair, spring = scene.cams["C"], scene.springs["C"]
+    assert isinstance(spring, SlideSpring)
+    preload = spring.rate * (pair.lowest(scene.points_of, scene.sliders) - spring.free)
+    load = FollowerLoad(scene.links[pair.follower].mass_kg, spring.rate, preload)
+    return lift_off(pair.profile, load).omega_rad_s
+
+
+def _turned(ratio: float) -> Trial:
+    return Trial(_cam(ratio * lift_off_rad_s()), steps_per_turn=STEPS, turns=1.0)
+
+
+_case = partial(
+    Case,
+    source="made up; `models.scene.hard.sprung_cam`",
+    truth="the speed at which spring and inertia leave no contact force, in closed form",
+    parameter="speed over that of lift-off",
+    within=OPEN,
+    scale="linear",
+    trial=_turned,
+)
+CAMS = (
+    _case(
+        name="cam-on",
+        title="Follower below the speed at which it leaves its cam",
+        expected="stays on up to 1; where it leaves is the engine's own speed of lift-off",
+        values=(0.5, 0.7, 0.9, 0.95, 0.98),
+    ),
+    _case(
+        name="cam-off",
+        title="Follower above the speed at which it leaves its cam",
+        expected="leaves down to 1: a joint that stays closed pulls, as no contact does",
+        values=(1.5, 1.25, 1.1, 1.05, 1.02),
+        good=("silently-open",),
+    ),
+)
