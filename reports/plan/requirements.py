@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from reports.compare.elastic_truth import ElasticTruth
 
 
+MOST_LETTERS = 40
+"""Most letters of the name of a scene (`models.files.schema.NAME`)."""
 LOOKS = 721
 """Positions of the first look at a period; the run itself looks at every sample."""
 PROFILES = ("tuned", "as-shipped")
@@ -274,6 +276,11 @@ def given_of(scenes: Iterable[Scene], segments: int | None, springs: str | None)
     return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))
 
 
+def named(name: str, end: str) -> str:
+    """Return a name of a scene with an end, as long as names may be."""
+    return name[: MOST_LETTERS - len(end)] + end
+
+
 def by_contact(scenes: Iterable[Scene], counts: Sequence[int], option: str) -> list[Scene]:
     """Return the scenes with their cams by contact, under a name of its own for each number of
     facets; as they are for none. Raises CrankcheckError where no scene has a cam, for a number out
@@ -289,7 +296,7 @@ def by_contact(scenes: Iterable[Scene], counts: Sequence[int], option: str) -> l
     if not any(scene.cams for scene in every):
         raise CrankcheckError(f"{option}: it is of cams, and no scene has one; leave {option} out")
     return [
-        replace(outlined(scene, count), name=f"{scene.name}-{count}-facets")
+        replace(outlined(scene, count), name=named(scene.name, f"-{count}-facets"))
         if scene.cams
         else scene
         for scene in every

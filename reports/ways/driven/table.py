@@ -21,8 +21,14 @@ TABLE = CellTable(
 
 
 def words(checked: Sequence[Checked]) -> Sequence[str]:
-    """The meaning of the numbers."""
-    return [checked[0].cell.way.units]
+    """The meaning of the numbers, and how cams are held."""
+    scenes = {one.cell.scene.name: one.cell.scene for one in checked}
+    cams = [
+        f"{name}, cam {pair.name}: {pair.hold}."
+        for name, scene in scenes.items()
+        for pair in scene.cams.values()
+    ]
+    return [checked[0].cell.way.units, *cams]
 
 
 def steps(driven: Sequence[Checked]) -> Sequence[str]:
