@@ -1,12 +1,18 @@
 """Gears and cams in the engines that crankcheck offers them in."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from analytic.kinematics import solve
 from models.files.reading import load_scene, shipped
+from models.scene import GROUND, Driver, Link, Scene
+from models.scene.laws import ConstantSpeed
 from reports.judge.cell import check
 from sim.run import run
+from tests.analytic.gears.trains import KNOWN
 from tests.worlds.engines import SIMPLE
 from tests.worlds.runs import ran, start_of
 from tests.worlds.tiers import few, slow
@@ -58,3 +64,62 @@ def test_other_engines_say_that_they_are_not_offered(engine: str, name: str, wha
     assert done.status == "unsupported"
     assert f"{what} (" in done.reason
     assert "not offered by crankcheck" in done.reason
+
+
+def _scene(name: str) -> Scene:
+    """A published train as a scene: central bodies about one point, planets beside it, each gear
+    pinned to its carrier; where centres stand does not matter to the ratios."""
+    known = KNOWN[name]
+    held = dict.fromkeys(known.held, GROUND)
+    gears = [
+        replace(
+            gear,
+            bodies=tuple(held.get(body, body) for body in gear.bodies),
+            carrier=held.get(gear.carrier, gear.carrier),
+        )
+        for gear in known.gears
+    ]
+    carriers = {gear.carrier for gear in known.gears}
+    every = {body for gear in gears for body in (*gear.bodies, gear.carrier)} - {GROUND}
+    on = {body: {gear.carrier for gear in known.gears if body in gear.bodies} for body in every}
+    met = {body: sum(body in gear.bodies for gear in known.gears) for body in every}
+    planets = [
+        body for body in sorted(every)
+        if body not in {*carriers, known.source}
+        and met[body] > 1 and len(on[body]) == 1 and GROUND not in on[body]
+    ]  # fmt: skip
+    points = {GROUND: {"O": (0.0, 0.0)}} | {body: {f"tip-{body}": (0.1, 0.0)} for body in every}
+    for number, body in enumerate(sorted(every)):
+        if body in planets:
+            (carrier,) = on[body]
+            place = (0.06 * math.cos(number), 0.06 * math.sin(number))
+            points[held.get(carrier, carrier)][body] = place
+            points[body][body] = (0.0, 0.0)
+        elif on.get(body) == {GROUND}:
+            points[GROUND][body] = (0.05 * number, 0.0)
+            points[body][body] = (0.0, 0.0)
+        else:
+            points[body]["O"] = (0.0, 0.0)
+    links = {body: Link(body, points[body], 1.0, (0.0, 0.0), 1e-3) for body in sorted(every)}
+    named = {f"g{n}": replace(gear, name=f"g{n}") for n, gear in enumerate(gears)}
+    driver = Driver(known.source, ConstantSpeed(0.0, 5.0))
+    return Scene(name, "published", points[GROUND], links, {}, driver, gears=named)
+
+
+@slow("24 trains in three engines")
+@pytest.mark.parametrize("name", KNOWN)
+def test_published_trains_turn_by_their_ratios(name: str) -> None:
+    scene, known = _scene(name), KNOWN[name]
+    times = np.linspace(0.0, 0.4, 41)
+    own = solve(scene, times).links[known.body].theta
+    assert np.abs(own - float(known.ratio) * 5.0 * times).max() < 1e-12 * abs(own[-1]) + 1e-13
+    for engine in ENGINES:
+        done = run(scene, start_of(scene), engine, dt_s=1e-3, steps=400)
+        if (name, engine) == ("wolfrom", "pymunk"):  # 162 to 1: its iterations do not converge
+            assert done.status == "diverged"
+            continue
+        assert done.status == "ok", (engine, done.reason)
+        assert done.motion is not None
+        turned = done.motion.links[known.body].theta
+        off = np.abs(turned - float(known.ratio) * 5.0 * done.motion.time_s).max()
+        assert off < 1e-5 * max(1.0, abs(float(known.ratio))), engine
