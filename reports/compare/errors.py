@@ -75,9 +75,10 @@ class SceneFacts:
 
     def jumping(self, rate: int) -> float:
         """Return the pure error of a rate of this order in and beside the jumps of laws of cams: a
-        step over one has some of each side."""
+        step over one has some of each side, and a stiff joint answers a jump of the acceleration by
+        as much again to the other."""
         acceleration, jerk = self.law_jumps
-        return (acceleration + 0.5 * jerk * self.step_rad) * self.step_rad ** (2 - rate)
+        return (3.0 * acceleration + 0.5 * jerk * self.step_rad) * self.step_rad ** (2 - rate)
 
 
 @dataclass(frozen=True)

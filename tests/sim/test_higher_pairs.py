@@ -7,10 +7,14 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.files.reading import load_scene, shipped
+from models.files.assemble import scene_text
+from models.files.reading import load_scene, parse_scene, shipped
+from models.lectures.tasks.cams import load_cam_task
 from models.scene import GROUND, Driver, Link, Scene
 from models.scene.laws import ConstantSpeed
 from reports.judge.cell import check
+from reports.lectures.cams.cam_request import cam_of, limits_of, load_of
+from reports.lectures.cams.cam_scene import cam_scene
 from sim.run import run
 from tests.analytic.gears.trains import KNOWN
 from tests.worlds.engines import SIMPLE
@@ -54,6 +58,20 @@ def test_followers_are_within_1e4_of_the_stroke(name: str, engine: str) -> None:
     else:
         off = motion.links[pair.follower].theta - true.links[pair.follower].theta
     assert np.abs(off).max() < 1e-4 * pair.profile.law.stroke
+
+
+@pytest.mark.parametrize(
+    "name", few(["valve-roller", "rocker-arm", "flat-tappet"], ["flat-tappet"], "as shipped scenes")
+)
+def test_the_scene_of_a_designed_cam_is_held(name: str) -> None:
+    """The last one has a law with a jump of the acceleration, at samples of the run."""
+    task, _ = load_cam_task(name)
+    cam = cam_of(task, limits_of(task))
+    made = cam_scene(task.name, task.source, cam, load_of(task), task.speed_rad_s)
+    scene = parse_scene(scene_text(made), "made")
+    for engine in ENGINES:
+        found = check(of_turns(scene, engine, 360, with_forces=True))
+        assert found.verdict == "within", found.failures
 
 
 @pytest.mark.parametrize("engine", SIMPLE)

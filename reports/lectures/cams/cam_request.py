@@ -14,10 +14,12 @@ from analytic.cams.base_circle import refuse_undercut
 from analytic.cams.cam_design import CamLimits, ExaminedCam, smallest_cam
 from analytic.cams.contact_force import FollowerLoad
 from models.errors import CrankcheckError
+from models.files.assemble import scene_text
 from models.lectures.shipped_tables import shipped_in
 from models.lectures.tasks import TASKS
 from models.lectures.tasks.cams import CamTask, load_cam_task
 from models.scene.cams import Cam
+from reports.lectures.cams.cam_scene import cam_scene
 from reports.lectures.cams.cam_tables import document, show_cam
 from reports.lectures.cams.profile_files import ProfileFiles
 from reports.output.console import grid, say, say_whole
@@ -61,7 +63,10 @@ class CamRequest:
         if self.output is not None:
             _write(self.output, task, found, self, f"{text}\n")
             if not self.json:
-                say(console, f"\n{self.output}: profile as DXF, SVG and CSV, drawings, cam.json")
+                say(
+                    console,
+                    f"\n{self.output}: profile as DXF, SVG and CSV, scene, drawings, cam.json",
+                )
         return 1 if faults else 0
 
 
@@ -99,7 +104,8 @@ def _write(folder: Path, task: CamTask, found: ExaminedCam, request: CamRequest,
     """Write all files of a cam into a folder."""
     from reports.lectures.cams.cam_drawings import drawings  # matplotlib takes a second
 
-    texts: dict[str, str | bytes] = {"cam.json": text}
+    scene = cam_scene(task.name, task.source, found.cam, found.load, task.speed_rad_s)
+    texts: dict[str, str | bytes] = {"cam.json": text, f"{task.name}.toml": scene_text(scene)}
     texts |= ProfileFiles(task.name, found.cam, request.points).written()
     texts |= drawings(task.name, task.source, found, request.paper)
     check_folder(folder, "-o", list(texts))
