@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq  # type: ignore[import-untyped]  # ships no stubs
@@ -17,7 +16,8 @@ from scipy.optimize import brentq  # type: ignore[import-untyped]  # ships no st
 from analytic.cams.profile import largest, touch, turn_of
 from models.array import Array
 from models.errors import CrankcheckError
-from models.scene.cams import Cam, OscillatingFollower
+from models.scene.cam_laws import CamLaw
+from models.scene.cams import Cam, Follower, OscillatingFollower
 
 LADDER = 40
 """Number of base radii that are tried before the smallest one is refined."""
@@ -71,8 +71,10 @@ def pressure_margin(rise_rad: float, return_rad: float | None = None) -> Margin:
     return margin
 
 
-def least_base(cam: Cam, margin: Margin, *, from_m: float = 0.0) -> float:
-    """Return the smallest base radius [m] above ``from_m`` with which the cam keeps a limit.
+def least_base(
+    law: CamLaw, follower: Follower, sense: int, margin: Margin, *, from_m: float = 0.0
+) -> float:
+    """Return the smallest base radius [m] above ``from_m`` with which a cam keeps a limit.
 
     Raises CrankcheckError where none does. Found on a ladder of radii, and refined to 1e-14 of
     itself.
@@ -80,28 +82,27 @@ def least_base(cam: Cam, margin: Margin, *, from_m: float = 0.0) -> float:
 
     def at(start: float) -> float:
         try:
-            return margin(replace(cam, base_m=cam.follower.base(start)))
+            return margin(Cam(law, follower.base(start), follower, sense))
         except (CrankcheckError, ValueError):
             return -math.inf
 
-    tried = [(float(start), at(start)) for start in _starts(cam, from_m)]
+    tried = [(float(start), at(start)) for start in _starts(law, follower, from_m)]
     kept = next((k for k, (_, off) in enumerate(tried) if off > 0.0), None)
     if kept is None:
         best = max(tried, key=lambda each: each[1], default=(0.0, -math.inf))
+        nearest = f"; the nearest to it is {follower.base(best[0]):.6g} m" if best[0] else ""
         raise CrankcheckError(
-            f"no base radius up to {cam.follower.base(tried[-1][0]):.6g} m keeps the limit; the "
-            f"nearest to it is {cam.follower.base(best[0]):.6g} m: change the stroke, the spans "
-            "or the follower"
+            f"no base radius keeps the limit{nearest}: change the stroke, the spans or the follower"
         )
     high = tried[kept][0]
     if kept and math.isfinite(tried[kept - 1][1]):
         high = brentq(at, tried[kept - 1][0], high, xtol=1e-15, rtol=1e-14)
-    return float(cam.follower.base(high))
+    return float(follower.base(high))
 
 
-def _starts(cam: Cam, from_m: float) -> Array:
+def _starts(law: CamLaw, follower: Follower, from_m: float) -> Array:
     """Return starts of the follower to try, of growing base radius."""
-    follower, stroke = cam.follower, cam.law.extremes(0)[1]
+    stroke = law.extremes(0)[1]
     if not isinstance(follower, OscillatingFollower):
         size = max(stroke, abs(follower.offset_m), follower.roller_m)
         starts = size * np.geomspace(1e-3, 1e3, LADDER)
@@ -115,19 +116,22 @@ def _starts(cam: Cam, from_m: float) -> Array:
     return np.concatenate([[follower.start(from_m)], kept]) if from_m > 0.0 else kept
 
 
-def refuse_undercut(cam: Cam) -> None:
-    """Refuse a cam that undercuts. Raises CrankcheckError that says from which base radius on it
-    does not."""
-    if cam.follower.contact == "knife":
-        return
-    drops = [one for one in cam.law.jumps if one.velocity < 0.0]
-    if drops:
+def refuse_corners(law: CamLaw, follower: Follower) -> None:
+    """Refuse a law whose velocity drops, but for a knife edge. Raises CrankcheckError."""
+    drops = [one for one in law.jumps if one.velocity < 0.0]
+    if drops and follower.contact != "knife":
         raise CrankcheckError(
             f"the profile undercuts with every base radius: the velocity of its law drops at "
             f"{math.degrees(drops[0].angle_rad):.6g} deg, where only a knife edge follows; give a "
             "law with continuous velocity"
         )
-    if curvature_margin()(cam) > 0.0:
+
+
+def refuse_undercut(cam: Cam) -> None:
+    """Refuse a cam that undercuts. Raises CrankcheckError that says from which base radius on it
+    does not."""
+    refuse_corners(cam.law, cam.follower)
+    if cam.follower.contact == "knife" or curvature_margin()(cam) > 0.0:
         return
     most, phi = sharpest(cam)
     roller = cam.follower.roller_m
@@ -138,8 +142,8 @@ def refuse_undercut(cam: Cam) -> None:
         f"{roller:.6g} m"
     )
     try:
-        cure = f"from a base radius of {least_base(cam, curvature_margin(), from_m=cam.base_m):.9g}"
-        cure += " m on it does not"
+        least = least_base(cam.law, cam.follower, cam.sense, curvature_margin(), from_m=cam.base_m)
+        cure = f"from a base radius of {least:.9g} m on it does not"
     except CrankcheckError as error:
         cure = str(error)
     raise CrankcheckError(

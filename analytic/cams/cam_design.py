@@ -12,14 +12,14 @@ from analytic.cams.base_circle import (
     curvature_margin,
     least_base,
     pressure_margin,
-    refuse_undercut,
+    refuse_corners,
     steepest,
 )
 from analytic.cams.contact_force import CamForces, FollowerLoad, LiftOff, contact_force, lift_off
 from analytic.cams.profile import largest, touch, turn_of
 from models.array import Array
 from models.scene.cam_laws import CamLaw
-from models.scene.cams import Cam, Follower, OscillatingFollower
+from models.scene.cams import Cam, Follower
 
 ROUNDING = 1e-9
 """Share by which a cam may exceed a limit, as one that was designed by it does."""
@@ -47,14 +47,8 @@ class CamLimits:
 def smallest_cam(law: CamLaw, follower: Follower, sense: int, limits: CamLimits) -> Cam:
     """Return the cam of the smallest base circle that keeps the limits. Raises CrankcheckError
     where none does."""
-    if isinstance(follower, OscillatingFollower):
-        start = 0.5
-    else:
-        start = max(law.stroke, abs(follower.offset_m), follower.roller_m)
-    cam = Cam(law, follower.base(start), follower, sense)
-    if law.continuous < 1:
-        refuse_undercut(cam)
-    return Cam(law, least_base(cam, limits.margin), follower, sense)
+    refuse_corners(law, follower)
+    return Cam(law, least_base(law, follower, sense, limits.margin), follower, sense)
 
 
 @dataclass(frozen=True)

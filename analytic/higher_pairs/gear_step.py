@@ -17,6 +17,7 @@ from analytic.dyads.steps import PeriodicStep, Step, common_period, stretched
 from analytic.structure.gear_groups import GearGroup
 from models.array import Array
 from models.errors import CrankcheckError
+from models.scene import GROUND
 
 MOST_TURNS = 128
 """Most turns of the driver after which a linkage behind gears may come back."""
@@ -36,6 +37,12 @@ class GearStep(PeriodicStep):
         self.scene = placed.scene
         self._counted: dict[tuple[str, ...], Turns] = {}
         """By the keys of the change points that were known."""
+        radii = [
+            gear.radius_m(self.scene.points_of) for gear in train.gears if gear.carrier != GROUND
+        ]
+        self.firmness = min([*radii, self.scene.longest_m]) / self.scene.longest_m
+        """Least pitch radius on a moving carrier, over the longest link: a slip by the arc of a
+        step turns a gear by the inverse of it."""
         known = placed.known
         self.links: list[tuple[str, str, str, Mapping[str, float], float]] = []
         for body, pin in zip(train.bodies, train.pins, strict=True):
@@ -64,7 +71,7 @@ class GearStep(PeriodicStep):
             turn = Vec(np.cos(theta), np.sin(theta))
             bound = error if chunk.certified else None
             chunk.bodies[body] = BodyKinematics(local, anchor, turn, omega, alpha, bound, theta)
-        chunk.sines[self.key] = np.ones_like(chunk.theta)
+        chunk.sines[self.key] = np.full_like(chunk.theta, self.firmness)
 
     def _angle(self, chunk: Chunk, name: str) -> Real:
         """Return the angle of a known body [rad], whole turns counted from time 0 on."""

@@ -53,6 +53,11 @@ def release_multibody(
         freedom without mass; friction; an invalid time; an integration that fails.
     """
     check_duration(scene.name, until_s)
+    if scene.cams:
+        raise CrankcheckError(
+            f"{scene.name}: cams ({', '.join(scene.cams)}) are not among the equations of all "
+            "bodies; take a mechanism of one freedom, which is solved group by group"
+        )
     dynamics, q, rates = ready(scene, near)
     return MultibodyMotion(dynamics, method, float(until_s), (q, rates))
 

@@ -26,7 +26,7 @@ class SegmentTable(schema.Table):
     the ``points`` (angle, lift) from (0, 0) on, and the ``order`` of its spline."""
 
     motion: str
-    span_deg: Annotated[schema.Positive, Field(le=360.0)]
+    span_deg: schema.Degrees
     lift_m: schema.Number = 0.0
     lift_deg: schema.Degrees = 0.0
     points: Annotated[list[schema.Coordinates], Field(max_length=MOST_ROWS)] = Field(

@@ -14,8 +14,6 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-import numpy as np
-
 from models.errors import EngineError
 from models.mjcf.forces import sliding_joint, turning
 from models.mjcf.options import AttributeRow, Attributes, attributes
@@ -108,11 +106,7 @@ class CamRelation:
     def coefficients(self, at: float, ahead: float = 0.0) -> tuple[float, ...]:
         """Return MuJoCo's five coefficients of the parabola about a coordinate ``at`` of the cam;
         the follower is to be ``ahead`` by so many times the second derivative."""
-        pair = self.pair
-        lift = pair.profile.law.at(pair.law_angle(np.array([at]), np.zeros(1)))
-        value, first, second = (
-            pair.way * pair.sense**n * float(one[0]) for n, one in enumerate(lift[:3])
-        )
+        value, first, second = self.pair.lift(at)
         x = self.cam_ref - at
         constant = self.lowest + value - self.follower_ref + first * x + 0.5 * second * x * x
         return constant + ahead * second, first + second * x, 0.5 * second, 0.0, 0.0

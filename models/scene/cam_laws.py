@@ -10,10 +10,11 @@ Source: R. L. Norton, Design of Machinery, 5th ed. 2012, ch. 8 (kinds, and peak 
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -195,6 +196,20 @@ UNIT: Mapping[str, Callable[[], list[_Piece]]] = {
 KINDS = (*UNIT, "table")
 
 
+def _rates(terms: Any, t: Any, sine: Any, cosine: Any, rate: Any, half: Any) -> Any:
+    """Return a polynomial and sine with three derivatives, for numbers or arrays (T,)."""
+    value = first = second = third = 0.0 * t
+    for c in terms[::-1]:  # Horner's scheme for all Taylor terms at once
+        third, second = third * t + second, second * t + first
+        first, value = first * t + value, value * t + c
+    return (
+        value + sine,
+        (first + rate * cosine) / half,
+        (2.0 * second - rate**2 * sine) / half**2,
+        (6.0 * third - rate**3 * cosine) / half**3,
+    )
+
+
 @dataclass(frozen=True)
 class CamLaw:
     """Segments in their order over a turn of the cam, counted from angle 0.
@@ -223,6 +238,19 @@ class CamLaw:
     def __reduce__(self) -> tuple[type[CamLaw], tuple[tuple[CamSegment, ...]]]:
         return CamLaw, (self.segments,)  # without what is computed from it
 
+    def scaled(self, factor: float) -> CamLaw:
+        """Return the law with every lift times a factor."""
+        return CamLaw(
+            tuple(
+                replace(
+                    one,
+                    lift=factor * one.lift,
+                    points=tuple((angle, factor * lift) for angle, lift in one.points),
+                )
+                for one in self.segments
+            )
+        )
+
     @cached_property  # once for all evaluations
     def _pieces(self) -> tuple[Array, Array, Array, Array]:
         """Ends (n + 1,) [rad] of the pieces, coefficients (8, n), sines, half widths."""
@@ -243,24 +271,37 @@ class CamLaw:
         ends.append(math.tau)
         return np.array(ends), np.array(columns).T, np.array(sines).T, 0.5 * np.diff(ends)
 
+    @cached_property
+    def _rows(self) -> tuple[list[float], list[tuple[Any, ...]]]:
+        """The same as plain numbers, a row each piece: an array's are read ten times as slowly."""
+        ends, terms, (size, rate, phase), half = (each.tolist() for each in self._pieces)
+        return ends, list(zip(zip(*terms, strict=True), size, rate, phase, half, strict=True))
+
     def at(self, phi: Array) -> CamLift:
         """Return lift and derivatives at angles (T,) [rad] of any turn; in a knot those after it.
         Accurate to rounding of the stroke, over the span to the power of the derivative."""
         ends, _, _, half = self._pieces
         folded = np.mod(np.asarray(phi, dtype=np.float64), math.tau)
         k = np.clip(np.searchsorted(ends, folded, side="right") - 1, 0, len(half) - 1)
-        t = np.clip((folded - ends[k]) / half[k] - 1.0, -1.0, 1.0)
-        return CamLift(*(self._derivative(n, k, t) for n in range(4)))
+        return self._in(k, np.clip((folded - ends[k]) / half[k] - 1.0, -1.0, 1.0))
 
-    def _derivative(self, order: int, k: NDArray[np.intp], t: Array) -> Array:
-        """A derivative in pieces ``k`` at their own ``t``, between -1 and 1."""
+    def at_one(self, phi: float) -> tuple[float, ...]:
+        """Return `at` for one angle [rad], within rounding: engines call it at every step."""
+        ends, rows = self._rows
+        folded = phi % math.tau
+        k = min(bisect_right(ends, folded), len(rows)) - 1
+        terms, size, rate, phase, half = rows[k]
+        t = min((folded - ends[k]) / half - 1.0, 1.0)
+        angle = rate * t + phase
+        sine, cosine = size * math.sin(angle), size * math.cos(angle)
+        return tuple(_rates(terms, t, sine, cosine, rate, half))
+
+    def _in(self, k: NDArray[np.intp], t: Array) -> CamLift:
+        """Lift and derivatives in pieces ``k`` at their own ``t``, between -1 and 1."""
         _, terms, (size, rate, phase), half = self._pieces
-        total = np.zeros_like(t)
-        for power in range(len(terms) - 1, order - 1, -1):
-            total = total * t + math.perm(power, order) * terms[power, k]
-        wave = (np.sin, np.cos)[order % 2](rate[k] * t + phase[k])
-        signed = (1.0, 1.0, -1.0, -1.0)[order] * size[k] * rate[k] ** order
-        return np.asarray((total + signed * wave) / half[k] ** order)
+        angle = rate[k] * t + phase[k]
+        sine, cosine = size[k] * np.sin(angle), size[k] * np.cos(angle)
+        return CamLift(*_rates(terms[:, k], t, sine, cosine, rate[k], half[k]))
 
     @property
     def knots_rad(self) -> tuple[float, ...]:
@@ -272,9 +313,9 @@ class CamLaw:
         """Knots at which lift, velocity, acceleration or jerk jump, and by how much."""
         ends, terms, _, half = self._pieces
         count, size = np.arange(len(half)), np.abs(terms).max()
+        ending, beginning = (self._in(count, np.full(len(half), t)) for t in (1.0, -1.0))
         steps = []
-        for order in range(4):
-            end, begin = (self._derivative(order, count, np.full(len(half), t)) for t in (1, -1))
+        for order, (end, begin) in enumerate(zip(ending, beginning, strict=True)):
             step = begin - np.roll(end, 1)
             rounding = 64 * np.finfo(float).eps * size / np.minimum(half, np.roll(half, 1)) ** order
             largest = max(abs(x) for x in self.extremes(order))
@@ -302,7 +343,7 @@ class CamLaw:
                 waves = range(math.floor(-rate[k] / PI) - 4, math.ceil(rate[k] / PI) + 5)
                 turning += [(n * PI - phase[k] - quarter) / rate[k] for n in waves]
             inside = np.array([t for t in turning if abs(t) <= 1.0])
-            found.append(self._derivative(order, np.full(len(inside), k), inside))
+            found.append(self._in(np.full(len(inside), k), inside)[order])
         return float(min(map(np.min, found))), float(max(map(np.max, found)))
 
     @property

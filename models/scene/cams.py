@@ -106,8 +106,8 @@ class OscillatingFollower(_CamFollower):
         if self.is_flat:
             return math.asin((base_m - self.face_m) / d)
         # Half the angle between d and the arm in the triangle with the side ``reach``.
-        square = (reach - d + arm) * (reach + d - arm) / ((d + arm - reach) * (d + arm + reach))
-        return 2.0 * math.atan(math.sqrt(square)) if reach < high else math.pi
+        up, along = (reach - d + arm) * (reach + d - arm), (high - reach) * (high + reach)
+        return 2.0 * math.atan2(math.sqrt(max(up, 0.0)), math.sqrt(along))
 
     def base(self, start_rad: float) -> float:
         """Return the base radius [m] of a start, the inverse of `start`."""

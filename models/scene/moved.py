@@ -9,11 +9,12 @@ from dataclasses import replace
 from typing import Any
 
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.scene.cams import Cam, TranslatingFollower
 from models.scene.driver import Released
 from models.scene.joints import turned
 from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.scene.loads import CoulombFriction, Friction, Load, PinSpring, Spring
-from models.scene.pairs import Gear
+from models.scene.pairs import CamPair, Gear
 
 
 def with_link(scene: Scene, name: str, **changes: Any) -> Scene:
@@ -67,6 +68,9 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
             old, phase_rad=old.phase_rad - angle_rad * old.relation.get(GROUND, 0) / old.second
         )
 
+    def cam(old: CamPair) -> CamPair:
+        return replace(old, start_rad=old.start_rad + angle_rad * (old.carrier == GROUND))
+
     # A link that slides on the ground turns with it: its angle is kept against the line.
     return replace(
         scene,
@@ -81,6 +85,7 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
             angles_rad={n: angle + angle_rad for n, angle in scene.start.angles_rad.items()},
         ),
         gears={name: gear(old) for name, old in scene.gears.items()},
+        cams={name: cam(old) for name, old in scene.cams.items()},
     )
 
 
@@ -132,6 +137,13 @@ def mirrored(scene: Scene, sides: Iterable[str]) -> Scene:
     def spring(old: Spring) -> Spring:
         return replace(old, free=-old.free) if isinstance(old, PinSpring) else old
 
+    def cam(old: CamPair) -> CamPair:
+        profile = old.profile
+        if isinstance(follower := profile.follower, TranslatingFollower):
+            flipped = replace(follower, offset_m=-follower.offset_m)
+            profile = replace(profile, follower=flipped, sense=-profile.sense)
+        return replace(old, profile=profile, side=-old.side, start_rad=-old.start_rad)
+
     flipped = {pin: -scene.branch.get(pin, 1) for pin in sides}
     return replace(
         scene,
@@ -149,6 +161,7 @@ def mirrored(scene: Scene, sides: Iterable[str]) -> Scene:
             rates_rad_s={name: -rate for name, rate in scene.start.rates_rad_s.items()},
         ),
         gears={n: replace(old, phase_rad=-old.phase_rad) for n, old in scene.gears.items()},
+        cams={name: cam(old) for name, old in scene.cams.items()},
     )
 
 
@@ -214,6 +227,13 @@ def scaled(scene: Scene, factor: float) -> Scene:
     def gear(old: Gear) -> Gear:
         return replace(old, module_m=None if old.module_m is None else old.module_m * factor)
 
+    def cam(old: CamPair) -> CamPair:
+        profile, follower = old.profile, old.profile.follower
+        lengths = {k: factor * v for k, v in vars(follower).items() if k.endswith("_m")}
+        law = profile.law if not old.slider else profile.law.scaled(factor)
+        grown = replace(follower, **lengths)
+        return replace(old, profile=Cam(law, profile.base_m * factor, grown, profile.sense))
+
     grown = {name: factor * by for name, by in scene.start.displacements_m.items()}
     quick = {name: factor * speed for name, speed in scene.start.speeds_m_s.items()}
     return replace(
@@ -227,4 +247,5 @@ def scaled(scene: Scene, factor: float) -> Scene:
         springs={name: spring(old) for name, old in scene.springs.items()},
         start=replace(scene.start, displacements_m=grown, speeds_m_s=quick),
         gears={name: gear(old) for name, old in scene.gears.items()},
+        cams={name: cam(old) for name, old in scene.cams.items()},
     )

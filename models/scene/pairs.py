@@ -85,6 +85,14 @@ class CamPair:
         """Return the angle of its law (T,) [rad] at angles of cam and carrier."""
         return np.asarray(self.sense * (cam_rad - carrier_rad - self.start_rad))
 
+    def lift(self, turned_rad: float) -> tuple[float, float, float]:
+        """Return the follower's coordinate beyond its lowest, and its first two derivatives by the
+        angle of the cam against the carrier, at one such angle."""
+        value, first, second, _ = self.profile.law.at_one(
+            self.sense * (turned_rad - self.start_rad)
+        )
+        return self.way * value, self.way * self.sense * first, self.way * second
+
     def pivots(self, points: Mapping[str, Points]) -> tuple[str, str]:
         """Return the names of the cam's centre and, of an oscillating follower, its pivot, else
         "". Raises ValueError where they are not shared with the carrier, or several."""
@@ -175,6 +183,10 @@ class Gear:
         centre, a relation without a mesh. Raises ValueError as `pivots`."""
         found = 2.0 * self.distance_m(points) / abs(self.teeth[0] + self.second)
         return self.module_m if self.module_m is not None else found or None
+
+    def radius_m(self, points: Mapping[str, Points]) -> float:
+        """Return the smaller pitch radius [m], by `slip_m` where they have no mesh."""
+        return min(self.teeth) * self.slip_m(points)
 
     def slip_m(self, points: Mapping[str, Points]) -> float:
         """Return the slip of the pitch circles [m] at 1 of the relation: half the module; about

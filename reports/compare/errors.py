@@ -53,6 +53,7 @@ class SceneFacts:
     driver, ``uneven_rates`` those of them whose rates depart too (`reports.compare.hardness`).
     ``floor`` is the pure error that rounding leaves in the engine (`sim.engine.Engine`).
     ``law_jumps`` are the largest jumps of acceleration and jerk in the laws of cams, pure;
+    ``parting`` is the acceleration with which loads would part its gears and cams at the start, and
     ``facets`` the facts of cams by contact.
     """
 
@@ -69,13 +70,15 @@ class SceneFacts:
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
     floor: float = AT_ROUNDING
     law_jumps: tuple[float, float] = (0.0, 0.0)
+    parting: float = 0.0
     facets: FacetFacts | None = None
 
     def jumping(self, rate: int) -> float:
         """Return the pure error of a rate of this order in and beside the jumps of laws of cams: a
-        step over one has some of each side."""
+        step over one has some of each side, and a stiff joint answers a jump of the acceleration by
+        as much again to the other."""
         acceleration, jerk = self.law_jumps
-        return (acceleration + 0.5 * jerk * self.step_rad) * self.step_rad ** (2 - rate)
+        return (3.0 * acceleration + 0.5 * jerk * self.step_rad) * self.step_rad ** (2 - rate)
 
 
 @dataclass(frozen=True)

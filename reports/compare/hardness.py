@@ -76,12 +76,26 @@ def loading(scene: Scene, motion: Motion) -> float:
     return largest
 
 
+def parting(scene: Scene, motion: Motion) -> float:
+    """Return the largest acceleration, pure, that its loads would give a body at the start if the
+    gears and cams of the scene were open; 0 without any, or without loads."""
+    if not (scene.gears or scene.cams):
+        return 0.0
+    square, found = scene.pace_rad_s**2, [0.0]
+    for name in dict.fromkeys(load.body for load in scene.loads.values()):
+        force, moment = _push(scene, motion, name)
+        found.append(float(np.abs(force[0])) / (_mass(scene, name) * scene.longest_m * square))
+        if name in scene.links and scene.links[name].inertia_kg_m2:
+            found.append(float(np.abs(moment[0])) / (scene.links[name].inertia_kg_m2 * square))
+    return max(found)
+
+
 def inertia_share(scene: Scene, force_n: float) -> float:
-    """Return the inertia of all masses at the longest link, as a share of a force, at most 1."""
+    """Return the inertia of all masses at the longest link, as a share of a force."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     push = sum(masses) * scene.longest_m * scene.pace_rad_s**2
-    return min(push / force_n, 1.0)
+    return push / force_n
 
 
 def _push(scene: Scene, motion: Motion, body: str) -> tuple[NDArray[np.complex128], Array]:

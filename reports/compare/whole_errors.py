@@ -21,6 +21,7 @@ from reports.compare.hardness import (
     inertia_share,
     law_jumps,
     load_slopes,
+    parting,
     shared,
     unevenly_turned,
 )
@@ -250,6 +251,7 @@ def whole_errors(beside: Beside, at: error_rows.Instants, parts: ComparedParts) 
             uneven_rates=unevenly_turned(scene, parts.far),
             floor=run.floor,
             law_jumps=law_jumps(scene, beside.whole),
+            parting=parting(scene, beside.whole),
             facets=facets(scene, beside.whole),
         ),
         of_forces=borne.facts,

@@ -116,10 +116,10 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     budget += _felt(tolerance, errors)
     if tolerance.bends:
         budget = links.deflecting(budget, step)
-    jumping = scene.jumping(max(tolerance.rate, tolerance.differenced))
-    budget += jumping * (BORNE if tolerance.makes_up else 1.0)
     budget += shaken_by_rounding(errors, max(tolerance.rate, tolerance.differenced))
     budget = min(float(budget), tolerance.cap)
+    jumping = scene.jumping(max(tolerance.rate, tolerance.differenced))
+    budget += jumping * (BORNE if tolerance.makes_up else 1.0)
     return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
 
 

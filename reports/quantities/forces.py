@@ -88,13 +88,16 @@ def silent(run: Run) -> bool:
     return forces is not None and bool(forces.undetermined)
 
 
-def largest_reaction(_: Scene, reference: Motion) -> float:
-    """Return the largest reaction in a pin, or normal force of a slider, over the run [N]."""
+def largest_reaction(scene: Scene, reference: Motion) -> float:
+    """Return the largest reaction in a pin, or normal force of a slider, over the run [N]; with
+    gears or cams, which take the load past the joints, at least the torque over the longest link.
+    """
     forces = reference.forces
     assert forces is not None
     pins = (np.hypot(*force.T) for bodies in forces.pins.values() for force in bodies.values())
     sliders = (np.abs(slider.normal) for slider in forces.sliders.values())
-    return _largest(itertools.chain(pins, sliders)) or 1.0
+    passed = [np.abs(forces.torque) / scene.longest_m] if scene.gears or scene.cams else []
+    return _largest(itertools.chain(pins, sliders, passed)) or 1.0
 
 
 def largest_moment(scene: Scene, reference: Motion) -> float:

@@ -68,7 +68,7 @@ class _Relation:
         self, _: Any, time_s: float, item: int, q: Array, rates: Array, at_rates: bool
     ) -> list[float]:
         """Return the violation of the relation [m or rad], or of its rates."""
-        value, slope = self._law(q)
+        value, slope, _ = self.pair.lift(float(q[ANGLE]))
         if at_rates:
             return [float(self._row(slope) @ np.asarray(rates))]
         return [float(self.way @ np.asarray(q)[NODE:]) + self.ahead - value]
@@ -77,10 +77,4 @@ class _Relation:
         self, _: Any, time_s: float, item: int, q: Array, rates: Array, at_rates: bool
     ) -> Array:
         """Return the derivatives of the relation by all coordinates, (1, 6)."""
-        return self._row(self._law(q)[1])[None]
-
-    def _law(self, q: Array) -> tuple[float, float]:
-        """Return lift and slope of the law at the coordinates of the cam."""
-        pair = self.pair
-        lift = pair.profile.law.at(pair.law_angle(np.array([q[ANGLE]]), np.zeros(1)))
-        return pair.way * float(lift.value[0]), pair.way * pair.sense * float(lift.first[0])
+        return self._row(self.pair.lift(float(q[ANGLE]))[1])[None]

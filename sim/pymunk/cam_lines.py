@@ -69,13 +69,10 @@ class CamLine:
     def _lift(self, angle: float, turning: float) -> tuple[float, float]:
         """Return the follower's coordinate by the law, and its change per turning of the cam over
         the next step."""
-        pair = self.pair
-        ends = np.array([angle, angle + turning])
-        lift = pair.profile.law.at(pair.law_angle(ends, np.zeros(2)))
-        value, slope = pair.way * lift.value, pair.way * pair.sense * lift.first
-        chord = (value[1] - value[0]) / turning if abs(turning) > LEAST_CHORD else slope[0]
-        lowest = pair.lowest(self.scene.points_of, self.scene.sliders)
-        return lowest + float(value[0]), float(chord)
+        value, slope, _ = self.pair.lift(angle)
+        if abs(turning) > LEAST_CHORD:
+            slope = (self.pair.lift(angle + turning)[0] - value) / turning
+        return self.pair.lowest(self.scene.points_of, self.scene.sliders) + value, slope
 
     def _at(self, body: str, point: str) -> Point:
         """Return a point of a body in the plane [m]."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import pymunk
 
+from models.errors import EngineError
 from models.scene import GROUND, Point
 from models.scene.joints import local_point
 from models.scene.pairs import Gear
@@ -41,8 +42,13 @@ class Mesh:
 
     @staticmethod
     def of(placed: SpaceBodies, gear: Gear) -> "Mesh":
-        """Make the mesh of a scene's gears."""
+        """Make the mesh of a scene's gears. Raises EngineError for two about one centre."""
         scene = placed.scene
+        if gear.module(scene.points_of) is None:
+            raise EngineError(
+                f"gears.{gear.name}: both turn about one centre of {gear.carrier}, which moves: "
+                "pymunk has no such relation; give them centres apart"
+            )
         ends = zip(gear.bodies, gear.pivots(scene.points_of), strict=True)
         first, second = (
             placed.from_centre(body, local_point(scene, body, pivot)) for body, pivot in ends

@@ -2,39 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, StrictInt, model_validator
+from pydantic import Field, model_validator
 
-from models.files.schema import Coordinates, Degrees, Name, NonNegative, Number, Positive, Table
+from models.files.cam_table import MOST_SEGMENTS, SegmentTable, law_of
+from models.files.schema import Degrees, Name, NonNegative, Number, Positive, Table
 from models.files.schema import Text as NoteText
 from models.lectures.shipped_tables import Source, find_table, read_table
 from models.lectures.tasks import TASKS
-from models.scene.cam_laws import CamLaw, CamSegment
+from models.scene.cam_laws import CamLaw
 from models.scene.cams import Follower, OscillatingFollower, TranslatingFollower
 
-MOST_SEGMENTS, MOST_ROWS = 100, 10_000
 Pressure = Annotated[float, Field(strict=True, gt=0.0, lt=90.0)]
-
-
-class SegmentTable(Table):
-    """A rise, dwell or return: ``lift`` is its change in m, or in deg of an oscillating follower; a
-    table has ``points`` of the angle [deg] and lift from its start, and the ``order`` of its
-    spline."""
-
-    motion: str
-    span_deg: Degrees
-    lift: Number = 0.0
-    points: Annotated[tuple[Coordinates, ...], Field(max_length=MOST_ROWS)] = ()
-    order: StrictInt = 5
-
-    def segment(self, unit: float) -> CamSegment:
-        points = tuple((math.radians(angle), unit * lift) for angle, lift in self.points)
-        span = math.radians(self.span_deg)
-        return CamSegment(self.motion, span, unit * self.lift, points, self.order)
 
 
 class FollowerTable(Table):
@@ -86,7 +68,7 @@ class BaseCircleTable(Table):
         return self
 
 
-class LoadTable(Table):
+class FollowerLoadTable(Table):
     """Inertia, spring and weight of the follower: kg, N/m and N, or, of one that oscillates, kg
     m^2, N m/rad and N m about its pivot."""
 
@@ -108,7 +90,7 @@ class CamTask(Table):
     follower: FollowerTable
     base: BaseCircleTable
     segments: Annotated[list[SegmentTable], Field(min_length=1, max_length=MOST_SEGMENTS)]
-    load: LoadTable | None = None
+    load: FollowerLoadTable | None = None
 
     @model_validator(mode="after")
     def _closes(self) -> CamTask:
@@ -117,8 +99,7 @@ class CamTask(Table):
 
     @cached_property
     def law(self) -> CamLaw:
-        unit = math.radians(1.0) if self.follower.motion == "oscillating" else 1.0
-        return CamLaw(tuple(one.segment(unit) for one in self.segments))
+        return law_of(self.segments, turns=self.follower.motion == "oscillating")
 
 
 def load_cam_task(name_or_path: str) -> tuple[CamTask, Path]:

@@ -164,9 +164,11 @@ def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -
         parting = scene.curvature * scene.mass_ratio / max(scene.conditioning, 1e-12)
         changing = CHANGE * scene.step_rad * scene.curvature**1.5 if placing == "solved" else 0.0
         changing += scene.jumping(2)
+        loaded = OPEN * scene.parting
         if not numbers.makes_up:
-            return min(OPEN * parting + changing, CAP) + pushed
+            return min(OPEN * parting + changing + loaded, CAP) + pushed
         own = min(ARM * (OPEN * parting + changing), CAP) + ROOM * 0.5 * errors.of_forces.start_load
+        own += min(ARM * loaded * errors.of_forces.inertia_share, CAP)
         return own + ARM * pushed
     if numbers.jump:
         jump = min(ROOM * scene.jolt * scene.step_rad, CAP)

@@ -12,6 +12,7 @@ from reports.quantities.quantity import BodyKind
 from sim.engine import Placing
 
 LEAST_SAMPLES = 8
+BOTH = 1.0 + 1e-6
 SHARE = 0.1
 """Largest uncertainty of the reference, as a share of its limit."""
 
@@ -79,8 +80,8 @@ class ReferenceCertain:
             return None
         worst, name, limit = 0.0, "", 0.0
         for key, body, bound in _bounds(evidence.errors):
-            if key not in evidence.limits:
-                continue
+            if key not in evidence.limits or bound <= BOTH * evidence.errors.of_scene.law_jumps[0]:
+                continue  # in a jump of a cam's law either side is right
             share = bound / evidence.limits[key].number
             share = math.inf if math.isnan(share) else share
             if share > worst:
@@ -178,7 +179,7 @@ def _the_same(errors: Errors) -> Iterator[Error]:
     borne = largest(row for row in errors.rows if row.quantity in FORCES)
     moved = errors.worst("acceleration")
     off = moved.pure if moved and moved.pure > UNROUNDED else 0.0
-    least = max(ROUNDING, LEAST * off * errors.of_forces.inertia_share)
+    least = max(ROUNDING, LEAST * off * min(errors.of_forces.inertia_share, 1.0))
     if borne and errors.of_scene.uneven and borne.pure <= least:
         yield borne
     rates: dict[tuple[BodyKind, str], list[Error]] = {}

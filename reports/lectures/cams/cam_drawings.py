@@ -18,7 +18,7 @@ from analytic.cams.profile import touch
 from models.array import Array
 from reports.figures.sheet import SIDES, Panels, sheet
 from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, Look, saved, shorten, styled
-from reports.lectures.cams.cam_sheet import draw_cam, draw_construction
+from reports.lectures.cams.cam_sheet import draw_cam
 from reports.lectures.cams.profile_files import unit_of
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.output.write import crankcheck_version
@@ -38,17 +38,15 @@ def drawings(name: str, source: str, found: ExaminedCam, paper: str) -> Mapping[
         figures = {
             "diagrams": draw_diagrams(name, note, found),
             "checks": draw_checks(name, note, found),
-            "pressure": draw_pressure(name, note, found),
         }
-        sheets = {
-            "cam": draw_cam(name, note, found, size),
-            "construction": draw_construction(name, note, found, size),
-        }
+        if found.rise_pressure[0] or found.return_pressure[0]:
+            figures["pressure"] = draw_pressure(name, note, found)
+        drawn = draw_cam(name, note, found, size)
     for kind in ("svg", "pdf"):
         files |= {
             f"{key}.{kind}": saved(one, kind, f"{name}: {key}") for key, one in figures.items()
         }
-        files |= {f"{key}.{kind}": one.saved(kind, f"{name}: {key}") for key, one in sheets.items()}
+        files[f"cam.{kind}"] = drawn.saved(kind, f"{name}: cam")
     return files
 
 

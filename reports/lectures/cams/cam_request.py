@@ -8,20 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 from rich.console import Console
 
 from analytic.cams.base_circle import refuse_undercut
 from analytic.cams.cam_design import CamLimits, ExaminedCam, smallest_cam
 from analytic.cams.contact_force import FollowerLoad
-from analytic.cams.given_profile import GivenProfile, interpolated
-from models.array import Array
 from models.errors import CrankcheckError
-from models.files.inputs import UnreadableError, regular_text
+from models.files.assemble import scene_text
 from models.lectures.shipped_tables import shipped_in
 from models.lectures.tasks import TASKS
 from models.lectures.tasks.cams import CamTask, load_cam_task
 from models.scene.cams import Cam
+from reports.lectures.cams.cam_scene import cam_scene
 from reports.lectures.cams.cam_tables import document, show_cam
 from reports.lectures.cams.profile_files import ProfileFiles
 from reports.output.console import grid, say, say_whole
@@ -39,9 +37,6 @@ class CamRequest:
     output: Annotated[
         Path | None, option("Folder of profile, drawings and JSON.", "-o --output DIR")
     ] = None
-    profile: Annotated[
-        Path | None, option("Points x_m,y_m round a cam: find its law back.", "FILE")
-    ] = None
     points: Annotated[int, option("Points of the profile's files.", min=36, max=100_000)] = 3600
     json: Annotated[bool, "As JSON, not as tables."] = False
     paper: PaperSize = "A4"
@@ -53,9 +48,9 @@ class CamRequest:
             return 0
         task, path = load_cam_task(self.task)
         if self.output is not None:
-            check_folder(self.output, "-o", inputs=[path, self.profile])
+            check_folder(self.output, "-o", inputs=[path])
         limits = limits_of(task)
-        cam = cam_of(task, limits) if self.profile is None else read_back(task, self.profile)
+        cam = cam_of(task, limits)
         refuse_undercut(cam)
         found = ExaminedCam(cam, task.speed_rad_s, load_of(task))
         faults = found.exceeded(limits)
@@ -68,7 +63,10 @@ class CamRequest:
         if self.output is not None:
             _write(self.output, task, found, self, f"{text}\n")
             if not self.json:
-                say(console, f"\n{self.output}: profile as DXF, SVG and CSV, drawings, cam.json")
+                say(
+                    console,
+                    f"\n{self.output}: profile as DXF, SVG and CSV, scene, drawings, cam.json",
+                )
         return 1 if faults else 0
 
 
@@ -102,35 +100,12 @@ def load_of(task: CamTask) -> FollowerLoad | None:
     return FollowerLoad(load.inertia, load.stiffness, load.preload, load.weight, angle)
 
 
-def read_back(task: CamTask, path: Path) -> Cam:
-    """Return the cam of given points, its law found back. Raises CrankcheckError for a file without
-    them, and as `GivenProfile`."""
-    sense = 1 if task.sense == "counter-clockwise" else -1
-    return GivenProfile(interpolated(read_points(path)), task.follower.follower, sense).cam()
-
-
-def read_points(path: Path) -> Array:
-    """Return points (N, 2) [m] of a CSV file with columns x_m and y_m. Raises CrankcheckError."""
-    try:
-        heads, *lines = regular_text(path).splitlines()
-        names = [name.strip() for name in heads.split(",")]
-        columns = [names.index("x_m"), names.index("y_m")]
-        cells = [line.split(",") for line in lines if line.strip()]
-        return np.array([[float(row[k]) for k in columns] for row in cells])
-    except UnreadableError as error:
-        raise CrankcheckError(f"--profile {path}: {error}") from None
-    except (ValueError, IndexError) as error:
-        raise CrankcheckError(
-            f"--profile {path}: {error}; give a line of names with x_m and y_m, then a line of "
-            "numbers for each point"
-        ) from None
-
-
 def _write(folder: Path, task: CamTask, found: ExaminedCam, request: CamRequest, text: str) -> None:
     """Write all files of a cam into a folder."""
     from reports.lectures.cams.cam_drawings import drawings  # matplotlib takes a second
 
-    texts: dict[str, str | bytes] = {"cam.json": text}
+    scene = cam_scene(task.name, task.source, found.cam, found.load, task.speed_rad_s)
+    texts: dict[str, str | bytes] = {"cam.json": text, f"{task.name}.toml": scene_text(scene)}
     texts |= ProfileFiles(task.name, found.cam, request.points).written()
     texts |= drawings(task.name, task.source, found, request.paper)
     check_folder(folder, "-o", list(texts))

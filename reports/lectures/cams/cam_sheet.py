@@ -19,8 +19,8 @@ from matplotlib.patches import Polygon
 from analytic.cams.cam_design import ExaminedCam
 from analytic.cams.profile import CamContact, Plane, largest, touch, turn_of
 from models.array import Array
-from models.scene.cams import Cam, OscillatingFollower, TranslatingFollower
-from reports.figures.style import INK, QUIET, SMALL, TINY, Look
+from models.scene.cams import Cam, OscillatingFollower
+from reports.figures.style import INK, QUIET, SMALL, Look
 from reports.lectures.drawing.sheets.paper import (
     Box,
     Canvas,
@@ -30,7 +30,6 @@ from reports.lectures.drawing.sheets.paper import (
     arrow_head,
     headed,
     inner_box,
-    round_scale,
     text,
 )
 
@@ -42,9 +41,6 @@ THIN: Look = {"color": QUIET, "linewidth": 0.4}
 FORCE = "#c04a1d"
 FILL = "#dbe7f3"
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
-PARTS = 6
-"""Parts of each rise and return in the construction."""
-FACE = np.array([-0.7, 0.7], dtype=np.complex128)
 ROUND = np.exp(1j * np.linspace(0.0, math.tau, 361))
 WORDS_MM = 62.0
 
@@ -202,99 +198,3 @@ def _write_facts(axes: Axes, box: Box, found: ExaminedCam, scale: float, phi: fl
         y = box.top - 6.0 - 5.2 * k
         text(axes, box.left, y, head, SMALL, color=QUIET)
         text(axes, box.left + 24.0, y, words, SMALL)
-
-
-def stations(cam: Cam) -> Array:
-    """Return the angles of the construction: borders of segments, and parts of those that move."""
-    angles, start = [], 0.0
-    for one in cam.law.segments:
-        parts = 1 if one.kind == "dwell" else PARTS * max(1, round(one.span_rad / 2.0))
-        angles += [start + one.span_rad * k / parts for k in range(parts)]
-        start += one.span_rad
-    return np.array(angles)
-
-
-def draw_construction(name: str, note: str, found: ExaminedCam, paper: Paper) -> Canvas:
-    """Draw the diagram of the lift with its division, and the construction by inversion."""
-    cam, angles = found.cam, stations(found.cam)
-    contact = touch(cam, angles)
-    round_ = touch(cam, np.linspace(0.0, math.tau, 1441))
-    profile = round_.on_cam(round_.contact)
-    left, right = inner_box(paper).side_by_side(inner_box(paper).width * 0.65, 4.0)
-    canvas, _ = headed(paper, f"Construction of the cam: {name}", note, left, right)
-    reach = cam.base_m + cam.follower.roller_m
-    far: list[Plane] = [profile, reach * ROUND]
-    if isinstance(cam.follower, OscillatingFollower):
-        far.append(cam.follower.pivot_m * 1.04 * ROUND)
-    else:
-        far.append(_outer(cam) * ROUND)
-    plot = _plot(canvas.layer("construction"), right, far)
-    plot.curve(cam.base_m * ROUND, **CIRCLE)
-    if cam.follower.roller_m:
-        plot.curve(reach * ROUND, **CIRCLE)
-    if isinstance(cam.follower, TranslatingFollower) and not cam.follower.is_flat:
-        plot.curve(abs(cam.follower.offset_m) * ROUND, **THIN)
-    for k, back in enumerate(np.exp(-1j * cam.sense * angles)):
-        _draw_station(plot, cam, contact, k, complex(back))
-    if round_.pitch is not None and cam.follower.roller_m:
-        plot.curve(round_.on_cam(round_.pitch), **PITCH)
-    plot.curve(profile, **CAM)
-    plot.write(0j, "O", 1.0, -3.5)
-    _draw_diagram(canvas.layer("diagram"), left, cam, angles)
-    return canvas
-
-
-def _outer(cam: Cam) -> float:
-    """The distance at which stations of a translating follower are numbered [m]."""
-    return 1.05 * (cam.start + cam.law.stroke + cam.follower.roller_m)
-
-
-def _draw_station(plot: CamPlot, cam: Cam, contact: CamContact, k: int, back: complex) -> None:
-    """One position of the follower against the cam at rest, and its number."""
-    follower, first = cam.follower, cam.start
-    if isinstance(follower, OscillatingFollower):
-        pivot = complex(follower.pivot_m)
-        outer = 1.03 * pivot
-        lines = follower_lines(cam, contact, k, 0.3 * cam.base_m)
-        if not follower.is_flat:
-            # The arc of the tip about the pivot, from the start circle to its lift.
-            psi = first + float(contact.lift.value[k]) * np.linspace(0.0, 1.0, 30)
-            lines += [pivot - follower.arm_m * np.exp(-1j * psi)]
-    else:
-        e, height = follower.offset_m, first + float(contact.lift.value[k])
-        outer = e + 1j * _outer(cam)
-        lines = [np.array([e, outer])]
-        if follower.is_flat:
-            lines = [np.array([0.0, outer]), 1j * height + cam.base_m * FACE]
-        elif follower.roller_m:
-            lines.append(e + 1j * height + follower.roller_m * ROUND)
-    for line in lines:
-        plot.curve(line * back, **THIN)
-    if contact.pitch is not None:
-        x, y = plot.place(contact.pitch[k : k + 1] * back)[0]
-        plot.axes.plot(x, y, ".", color=INK, markersize=2.0)
-    paper = {"fc": "white", "ec": "none", "pad": 0.4}
-    plot.write(outer * back, str(k), 0.0, 0.0, size=TINY, ha="center", va="center", bbox=paper)
-
-
-def _draw_diagram(axes: Axes, box: Box, cam: Cam, angles: Array) -> None:
-    """The lift over a turn with its division; lifts are drawn over the width that is there."""
-    phi = np.linspace(0.0, math.tau, 721)
-    lift, marks = cam.law.at(phi).value, cam.law.at(angles).value
-    low, size = min(0.0, float(lift.min())), float(np.ptp(lift))
-    scale = round_scale(size, 0.5 * box.height)
-    wide, high = box.width - 14.0, size / scale
-    bottom = box.bottom + 0.5 * (box.height - high)
-
-    def place(at: Array, value: Array) -> tuple[Array, Array]:
-        return box.left + 7.0 + wide * at / math.tau, bottom + high * (value - low) / size
-
-    axes.plot(*place(phi, lift), **CAM)
-    axes.plot(*place(np.array([0.0, math.tau]), np.zeros(2)), color=INK, linewidth=0.7)
-    for k, (at, value) in enumerate(zip(angles, marks, strict=True)):
-        axes.plot(*place(np.array([at, at]), np.array([0.0, value])), **THIN)
-        x, y = place(np.array([at]), np.zeros(1))
-        text(axes, float(x[0]), float(y[0]) - 3.5, str(k), TINY, ha="center")
-    unit = "m" if not isinstance(cam.follower, OscillatingFollower) else "rad"
-    words = f"lift, {scale:g} {unit}/mm, over 360° of the cam"
-    text(axes, box.left + 7.0, bottom + high + 4.0, words, SMALL)

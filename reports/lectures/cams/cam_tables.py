@@ -9,6 +9,7 @@ from rich.console import Console
 
 from analytic.cams.cam_design import ExaminedCam
 from models.scene.cam_laws import KINDS, CamLaw, peak_factors
+from models.scene.cams import Cam
 from reports.lectures.cams.profile_files import unit_of
 from reports.output.console import grid, say
 
@@ -16,12 +17,12 @@ RATES = ("velocity", "acceleration", "jerk")
 Rows = list[dict[str, object]]
 
 
-def number_rows(found: ExaminedCam) -> dict[str, float | None]:
+def number_rows(found: ExaminedCam) -> dict[str, float | str | None]:
     """Return the numbers of a cam by name with unit; None where there is none."""
     cam, deg = found.cam, math.degrees
     pressure = (found.rise_pressure, found.return_pressure)
     (rise, rise_at), (back, back_at) = pressure
-    rows: dict[str, float | None] = {
+    rows: dict[str, float | str | None] = {
         "base_radius_m": cam.base_m,
         f"stroke_{unit_of(cam)}": cam.law.stroke,
         f"start_{unit_of(cam)}": cam.start,
@@ -38,6 +39,8 @@ def number_rows(found: ExaminedCam) -> dict[str, float | None]:
         rows["lift_off_rad_s"] = found.lift_off.omega_rad_s
         rows["lift_off_at_deg"] = deg(found.lift_off.phi_rad)
         rows["least_contact_force_n"], rows["largest_contact_force_n"] = found.force_range_n
+    for n, (name, peak) in enumerate(zip(RATES, cam.law.peaks(), strict=True), 1):
+        rows[f"peak_{name}_{_rate(cam, n)}"] = _finite(peak * found.speed_rad_s**n)
     endless = {name.replace("_m", "_at_deg").replace("_rad_s", "_at_deg") for name, x in
                rows.items() if x == math.inf}  # fmt: skip
     return {name: None if x == math.inf or name in endless else x for name, x in rows.items()}
@@ -54,9 +57,14 @@ def segment_rows(found: ExaminedCam) -> Rows:
         if one.kind not in ("dwell", "table"):
             for n, (name, factor) in enumerate(zip(RATES, peak_factors(one.kind), strict=True), 1):
                 rate = (found.speed_rad_s / one.span_rad) ** n
-                row[f"{name}_{unit}_s{n if n > 1 else ''}"] = _finite(factor * abs(one.lift) * rate)
+                row[f"{name}_{_rate(found.cam, n)}"] = _finite(factor * abs(one.lift) * rate)
         rows.append(row)
     return rows
+
+
+def _rate(cam: Cam, order: int) -> str:
+    """The unit of a derivative of the lift by time, as in names."""
+    return f"{unit_of(cam)}_s{order if order > 1 else ''}"
 
 
 def _finite(value: float) -> float | str:
@@ -100,7 +108,8 @@ def continuity(law: CamLaw) -> str:
 def show_cam(console: Console, found: ExaminedCam, faults: list[str]) -> None:
     """Print all tables of a cam."""
     for name, value in number_rows(found).items():
-        say(console, f"{name.replace('_', ' '):<28}{'none' if value is None else f'{value:.8g}'}")
+        words = "none" if value is None else f"{value:.8g}" if isinstance(value, float) else value
+        say(console, f"{name.replace('_', ' '):<28}{words}")
     unit = unit_of(found.cam)
     _show(console, segment_rows(found), f"law, peaks at {found.speed_rad_s:g} rad/s")
     _show(console, jump_rows(found.cam.law, unit)[:20], continuity(found.cam.law))

@@ -7,6 +7,7 @@ from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.selftest import engines, forces, requests
 from reports.selftest.fault import PROFILE, STEPS, FaultRuns, FaultSet
+from reports.selftest.higher_pairs import PAIRS
 from reports.selftest.log_faults import CLOCK, MISSING, VALUES
 from reports.selftest.mechanism import MECHANISM, MISPLACED
 from reports.selftest.unseen import UNSEEN
@@ -28,6 +29,7 @@ GROUPS = {
     "request": "another run than was asked for",
     "reference": "numbers that are the reference's",
     "scene": "another mechanism in the engine",
+    "pair": "another gear or cam in the engine",
     "engine": "something wrong inside the engine",
     "clock": "another instant than the log says",
     "log": "wrong numbers in the log",
@@ -39,6 +41,7 @@ FAULTS = FaultSet(
         *requests.RUN_FAULTS,
         *requests.LOG_FAULTS,
         *MECHANISM,
+        *PAIRS,
         *engines.FAULTS,
         *CLOCK,
         *VALUES,

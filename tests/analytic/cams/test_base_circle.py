@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from analytic.cams.base_circle import (
+    Margin,
     curvature_margin,
     least_base,
     pressure_margin,
@@ -20,6 +21,11 @@ from models.errors import CrankcheckError
 from models.scene.cam_laws import CamLaw, CamSegment
 from models.scene.cams import Cam, OscillatingFollower, TranslatingFollower
 from tests.analytic.cams.designs import FOLLOWERS, designs
+
+
+def least(cam: Cam, margin: Margin) -> float:
+    return least_base(cam.law, cam.follower, cam.sense, margin)
+
 
 DENSE = np.linspace(0.0, math.tau, 40_001)
 
@@ -87,12 +93,12 @@ def test_the_base_radius_of_a_convex_flat_faced_cam_is_the_closed_form() -> None
     rest = CamSegment("dwell", math.pi - b)
     law = CamLaw((CamSegment("harmonic", b, h), rest, CamSegment("harmonic", b, -h), rest))
     cam = Cam(law, 0.01, TranslatingFollower("flat"))
-    least = 0.5 * h * (math.pi / b) ** 2 - h
+    closed = 0.5 * h * (math.pi / b) ** 2 - h
     said = r"undercuts at (90|180) deg .* from a base radius of 0\.02 m on it does not"
     with pytest.raises(CrankcheckError, match=said):
         refuse_undercut(cam)
-    assert least_base(cam, curvature_margin()) == pytest.approx(least, rel=1e-12)
-    assert least_base(cam, curvature_margin(0.005)) == pytest.approx(least + 0.005, rel=1e-12)
+    assert least(cam, curvature_margin()) == pytest.approx(closed, rel=1e-12)
+    assert least(cam, curvature_margin(0.005)) == pytest.approx(closed + 0.005, rel=1e-12)
 
 
 def test_the_base_circle_of_a_permitted_pressure_angle_just_keeps_it() -> None:
@@ -100,7 +106,7 @@ def test_the_base_circle_of_a_permitted_pressure_angle_just_keeps_it() -> None:
     permitted = math.radians(30)
     for sense in (1, -1):
         cam = Cam(law, 0.3, TranslatingFollower("roller", 0.01, 0.008), sense)
-        base = least_base(cam, pressure_margin(permitted))
+        base = least(cam, pressure_margin(permitted))
         s, first, *_ = law.at(DENSE)
         rising = first >= 0.0
         start = (np.abs(sense * first - 0.008) / math.tan(permitted) - s)[rising].max()
@@ -108,14 +114,14 @@ def test_the_base_circle_of_a_permitted_pressure_angle_just_keeps_it() -> None:
         angle, _ = steepest(replace(cam, base_m=base), rising=True)
         assert angle == pytest.approx(permitted, rel=1e-12)
         # A limit for the return as well is never a smaller circle.
-        assert least_base(cam, pressure_margin(permitted, math.radians(10))) >= base
+        assert least(cam, pressure_margin(permitted, math.radians(10))) >= base
     swing = CamLaw(tuple(replace(one, lift=10 * one.lift) for one in law.segments))
     arm = Cam(swing, 0.05, OscillatingFollower("roller", 0.01, pivot_m=0.12, arm_m=0.1))
-    base = least_base(arm, pressure_margin(math.radians(40), math.radians(40)))
+    base = least(arm, pressure_margin(math.radians(40), math.radians(40)))
     found = touch(replace(arm, base_m=base), DENSE).pressure_rad
     assert np.abs(found).max() == pytest.approx(math.radians(40), rel=1e-8)
     with pytest.raises(CrankcheckError, match="the nearest to it is"):
-        least_base(arm, pressure_margin(math.radians(1), math.radians(1)))
+        least(arm, pressure_margin(math.radians(1), math.radians(1)))
 
 
 def test_a_law_whose_velocity_drops_has_no_base_circle_but_for_a_knife_edge() -> None:

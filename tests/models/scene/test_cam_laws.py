@@ -78,7 +78,8 @@ def test_lift_and_derivatives_are_those_of_the_textbooks_formula_in_50_digits(ki
 
 
 def test_peak_factors_are_those_of_the_textbooks_table() -> None:
-    # Norton, Design of Machinery, 5th ed., table 8-3 (peak factors), to the digits printed there.
+    # Norton, Design of Machinery, 5th ed., table 8-3 (peak factors), to the digits printed there;
+    # H. A. Rothbart (ed.), Cam Design Handbook, 2004, p. 35, eq. 2.17 to 2.19: 2 h and 4 h.
     printed = {
         "parabolic": (2.000, 4.000, math.inf),
         "harmonic": (1.571, 4.945, math.inf),
@@ -134,6 +135,9 @@ def test_any_turn_has_the_same_lift_and_a_law_that_begins_high_has_its_lowest_dw
     assert np.allclose(other.at(phi).value, law.at(phi + 160 * DEG).value, rtol=0, atol=1e-16)
     assert other.extremes(0) == pytest.approx((0.0, 0.02), abs=1e-17)
     assert law.at(np.array(0.3)).value.shape == ()
+    for angle in (*phi.tolist(), -0.3, 100.0, math.tau, np.nextafter(math.tau, 0.0)):
+        every = [float(rate) for rate in law.at(np.array(angle))]
+        assert law.at_one(angle) == pytest.approx(every, rel=1e-13, abs=1e-15)
     assert hash(pickle.loads(pickle.dumps(law))) == hash(law)
     assert other != law == rise_and_return("cycloidal")
 

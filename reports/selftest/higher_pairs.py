@@ -1,0 +1,94 @@
+"""Faults of gears and cams: another pair in the engine, and contact lost in the log."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from models.scene import Scene
+from models.scene.cam_laws import CamLaw
+from models.scene.pairs import CamPair, Gear
+from reports.selftest import fault
+from reports.selftest.log_faults import WHEN, moved
+from sim.engine import Run
+
+TRAIN, CAM = "planetary", "cam-roller"
+LOST = slice(WHEN, WHEN + 3)
+"""Samples at which contact is lost."""
+
+
+def _gear(change: Callable[[Gear, float], Gear]) -> fault.Plant:
+    """Give the engine another first pair of gears, or the same for a size of 0."""
+
+    def changed(scene: Scene, size: float) -> Scene:
+        name, gear = next(iter(scene.gears.items()))
+        return replace(
+            scene, gears={**scene.gears, name: change(gear, size)} if size else scene.gears
+        )
+
+    return fault.in_scene(changed)
+
+
+def _cam(change: Callable[[CamPair, float], CamPair]) -> fault.Plant:
+    """Give the engine another cam, or the same for a size of 0."""
+
+    def changed(scene: Scene, size: float) -> Scene:
+        ((name, pair),) = scene.cams.items()
+        return replace(scene, cams={name: change(pair, size) if size else pair})
+
+    return fault.in_scene(changed)
+
+
+def _profile(pair: CamPair, **changes: Any) -> CamPair:
+    return replace(pair, profile=replace(pair.profile, **changes))
+
+
+def _more_teeth(gear: Gear, count: float) -> Gear:
+    return replace(gear, teeth=(gear.teeth[0], gear.teeth[1] + round(count)))
+
+
+def _other_law(pair: CamPair, _: float) -> CamPair:
+    """Cycloidal in place of 3-4-5: the same stroke, and nearly the same course."""
+    parts = [replace(one, kind="cycloidal") if one.lift else one
+             for one in pair.profile.law.segments]  # fmt: skip
+    return _profile(pair, law=CamLaw(tuple(parts)))
+
+
+def _lifted(scene: Scene, done: Run, share: float) -> Run:
+    """Lift the follower off the cam for three samples."""
+    motion, ((_, pair),) = moved(done), scene.cams.items()
+    own = motion.sliders[pair.slider]
+    away = own.displacement.copy()
+    away[LOST] += share * pair.profile.law.stroke
+    sliders = {**motion.sliders, pair.slider: replace(own, displacement=away)}
+    return replace(done, motion=replace(motion, sliders=sliders))
+
+
+_train = partial(fault.Fault, "pair", rule="CC103", scenes=(TRAIN,))
+_disc = partial(fault.Fault, "pair", rule="CC104", scenes=(CAM,))
+PAIRS = (
+    _train("gear-tooth", "a gear has more teeth", plant=_gear(_more_teeth), size=1.0,
+           unit="teeth", whole=True),
+    _train("gear-inside", "a gear is taken for a ring",
+           plant=_gear(lambda gear, _: replace(gear, internal=True))),
+    _train("gear-swapped", "two gears have each other's teeth",
+           plant=_gear(lambda gear, _: replace(gear, teeth=gear.teeth[::-1]))),
+    _train("gear-turned", "a gear meshes ahead of where it does",
+           plant=_gear(lambda gear, by: replace(gear, phase_rad=gear.phase_rad + by)),
+           size=2e-2, unit="rad"),
+    _disc("cam-turned", "the profile is turned on its shaft",
+          plant=_cam(lambda pair, by: replace(pair, start_rad=pair.start_rad + by)),
+          size=math.radians(1.0), unit="rad"),
+    _disc("cam-backwards", "the profile is mounted the other way round",
+          plant=_cam(lambda pair, _: _profile(pair, sense=-pair.profile.sense))),
+    _disc("cam-law", "another law of the same stroke", plant=_cam(_other_law)),
+    _disc("cam-stroke", "a larger stroke",
+          plant=_cam(lambda pair, by: _profile(pair, law=pair.profile.law.scaled(1.0 + by))),
+          size=1e-2, unit="of it"),
+    _disc("cam-base", "a larger base circle",
+          plant=_cam(lambda pair, by: _profile(pair, base_m=pair.profile.base_m * (1.0 + by))),
+          size=1e-3, unit="of it"),
+    _disc("contact-lost", "the follower is off its cam for three samples",
+          plant=fault.in_log(_lifted), size=1e-2, unit="of the stroke"),
+)  # fmt: skip
