@@ -114,11 +114,11 @@ crankcheck.mechanism = (() => {
       });
     }
 
-    /** The curves of one body, on its point or on the ground; a run has no others than `links`. */
+    /** The curves of one body about its point; a run has none on the ground, and of `only` its links. */
     function outline(own, position, run) {
-      const { links } = run?.only ?? {};
-      const middle = own.point ? place(own.point, position, run) : run ? null : [0, 0];
-      if (middle === null || (links && !links.includes(own.body))) return null;
+      if (run && (own.body === "ground" || run.only?.links.includes(own.body) === false)) return null;
+      const middle = own.point ? place(own.point, position, run) : [0, 0];
+      if (middle === null) return null;
       const angle = direction(own, position, run);
       const [c, s] = [Math.cos(angle), Math.sin(angle)];
       const d = own.curves.map((curve) =>
