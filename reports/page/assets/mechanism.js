@@ -116,7 +116,7 @@ crankcheck.mechanism = (() => {
 
     /** The curves of one body about its point; a run has none on the ground, and of `only` its links. */
     function outline(own, position, run) {
-      if (run && (own.body === "ground" || run.only?.links.includes(own.body) === false)) return null;
+      if (run && (own.body === "ground" || run.only?.links?.includes(own.body) === false)) return null;
       const middle = own.point ? place(own.point, position, run) : [0, 0];
       if (middle === null) return null;
       const angle = direction(own, position, run);
