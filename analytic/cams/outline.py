@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.cams.profile import touch
+from analytic.cams.profile import CamContact, Plane, touch
 from models.errors import CrankcheckError
 from models.scene import Scene
 from models.scene.pairs import CamPair
@@ -31,8 +31,15 @@ def _outlined(scene: Scene, pair: CamPair, facets: int | None) -> CamPair:
         refuse_undercut(pair.profile)
     except CrankcheckError as error:
         raise CrankcheckError(f"{scene.name}: cams.{pair.name} by contact: {error}") from None
-    phi = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
-    contact = touch(pair.profile, phi)
+    _, points = touched(scene, pair, count)
+    corners = tuple((float(point.real), float(point.imag)) for point in points)
+    return replace(pair, facets=count, outline=corners)
+
+
+def touched(scene: Scene, pair: CamPair, count: int) -> tuple[CamContact, Plane]:
+    """Return the contact at ``count`` equal steps of a turn, and its points in the frame of the
+    cam's link, complex (count,) [m]. Raises CrankcheckError as `touch`."""
+    contact = touch(pair.profile, np.linspace(0.0, 2.0 * np.pi, count, endpoint=False))
     points = contact.on_cam(contact.contact)
     own = scene.points_of
     centre, pivot = pair.pivots(own)
@@ -43,6 +50,4 @@ def _outlined(scene: Scene, pair: CamPair, facets: int | None) -> CamPair:
         angle = np.arctan2(py - oy, px - ox)
         points = points if pair.side > 0 else points.conj()
     x, y = own[pair.cam][centre]
-    points = complex(x, y) + points * np.exp(1j * (angle - pair.start_rad))
-    corners = tuple((float(point.real), float(point.imag)) for point in points)
-    return replace(pair, facets=count, outline=corners)
+    return contact, complex(x, y) + points * np.exp(1j * (angle - pair.start_rad))

@@ -123,7 +123,7 @@ class ForceArrows:
 
     def box(self, path: Motion) -> tuple[Array, Array]:
         """Return the box as `box_of`, with room for all arrows of a turn."""
-        low, high = box_of(path)
+        low, high = box_of(self.scene, path)
         spare = 0.25 * MARGIN * self.size
         tips = [a.tip for k in range(path.time_s.size) for a in self.at(path, k)]
         if not tips:
@@ -144,7 +144,7 @@ def force_arrows(scene: Scene, path: Motion) -> ForceArrows:
     ]
     sizes = [each for each in sizes if math.isfinite(each)]
     largest = float(np.percentile(sizes, LARGE)) if sizes else 0.0
-    size = size_of_motion(path)
+    size = size_of_motion(scene, path)
     if not largest > 0.0:
         return ForceArrows(scene, 0.0, size, 0.0)
     return ForceArrows(scene, LONGEST * size / largest, size, rounded(0.7 * largest))

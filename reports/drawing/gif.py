@@ -11,8 +11,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from PIL import Image
 
@@ -22,6 +25,7 @@ from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_stands
 from reports.drawing import shape
 from reports.drawing.force_arrows import ForceArrows, force_arrows
+from reports.drawing.pair_curves import blocks_of, pair_curves
 from reports.output.numbers import readable
 from reports.protocol.way import way_of
 
@@ -128,7 +132,7 @@ class _Turn:
         path = shape.turn_of(scene, shape.PATH_SAMPLES, most_s, with_forces=with_forces)
         motion = shape.turn_of(scene, positions + 1, most_s, with_forces=with_forces)
         arrows = None if path.forces is None else force_arrows(scene, path)
-        box = shape.box_of(path) if arrows is None else arrows.box(path)
+        box = shape.box_of(scene, path) if arrows is None else arrows.box(path)
         return _Turn(scene, motion, path, box, arrows)
 
 
@@ -202,14 +206,17 @@ def draw_bodies(
     They stand as at sample ``index`` of ``motion``; ``path`` is a whole turn. Returns the size of
     the moving parts [m].
     """
-    size = shape.size_of_motion(path)
+    size = shape.size_of_motion(scene, path)
     for name, point in path.points.items():
         if name not in scene.ground:
             axes.plot(*point.position.T, color=GUIDE, linewidth=line, zorder=1)
     colours = shape.colours_of(scene)
+    blocks = blocks_of(scene)
     for slider in scene.sliders.values():
         rail = GUIDE if slider.on == GROUND else colours[slider.on]
-        _slider(axes, slider, rail, motion, path, index, size)
+        _slider(axes, slider, rail, motion, path, index, size, slider in blocks)
+    for own in pair_curves(scene):
+        _curves(axes, own.at(motion, index), colours.get(own.body, GUIDE))
     for name, link in scene.links.items():
         ends = [motion.points[point].position[index] for point in link.points]
         _link(axes, ends, colours[name])
@@ -219,6 +226,13 @@ def draw_bodies(
             axes.fill(*shape.foot_of(place, size).T, color=INK, alpha=0.75, linewidth=0, zorder=2)
         axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
     return size
+
+
+def _curves(axes: Axes, curves: Sequence[Array], colour: str) -> None:
+    """Draw closed curves of one body, all but its holes filled."""
+    rings = [Path(np.vstack([each, each[:1]]), closed=True) for each in curves]
+    look: dict[str, Any] = {"facecolor": to_rgba(colour, 0.12), "edgecolor": colour}
+    axes.add_patch(PathPatch(Path.make_compound_path(*rings), linewidth=1.2, zorder=2.5, **look))
 
 
 def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
@@ -238,8 +252,9 @@ def _slider(
     path: Motion,
     index: int,
     size: float,
+    has_block: bool,
 ) -> None:
-    """Draw the guide as far as the slider runs on it, and the block."""
+    """Draw the guide as far as the slider runs on it, and the block if it has one."""
     travel = path.sliders[slider.name].displacement
     place = motion.points[slider.point].position[index]
     along = float(motion.sliders[slider.name].displacement[index])
@@ -248,6 +263,8 @@ def _slider(
     ends = [travel.min() - reach - along, travel.max() + reach - along]
     rail = place + np.outer(ends, direction)
     axes.plot(*rail.T, color=colour, linewidth=1.4, linestyle=(0, (6, 3)), zorder=2)
+    if not has_block:
+        return
     half = np.array([[-1, -0.6], [1, -0.6], [1, 0.6], [-1, 0.6]]) * 0.045 * size
     across = np.array([-direction[1], direction[0]])
     corners = place + half @ np.array([direction, across])

@@ -26,6 +26,7 @@ from models.scene.driver import driver_axis, driver_course, driver_unit
 from models.scene.laws import Oscillating
 from reports.compare.last_turn import Trace
 from reports.compare.tracks import angle_error
+from reports.drawing.pair_curves import blocks_of, pair_curves, places_of
 from reports.drawing.shape import true_motion
 from reports.output.numbers import DIGITS, finite
 
@@ -112,8 +113,10 @@ def instants(scene: Scene, turns: float = 1.0) -> Array:
 
 
 def drawn_links(scene: Scene) -> list[str]:
-    """Return the links whose angle a drawing needs: those that carry a guide."""
-    return list(dict.fromkeys(s.on for s in scene.sliders.values() if s.on != GROUND))
+    """Return the links whose angle a drawing needs: those that carry a guide or curves."""
+    turning = [slider.on for slider in scene.sliders.values()]
+    turning += [each.on for each in pair_curves(scene)]
+    return list(dict.fromkeys(name for name in turning if name != GROUND))
 
 
 def moving_points(scene: Scene) -> list[str]:
@@ -126,13 +129,13 @@ def moving_points(scene: Scene) -> list[str]:
 def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[str, object]:
     """Return the shape of a scene and the reference motion at some times [s], to be embedded.
 
-    Series by point (x, then y), by guide-bearing link (angle) and by slider (displacement).
+    Series by point (x, then y), by link with a guide or curves (angle), by slider (displacement).
     ``truth`` replaces the driven reference, where there is another.
     """
     motion = true_motion(scene, time_s) if truth is None else truth
     points = {name: motion.points[name].position for name in moving_points(scene)}
     links = drawn_links(scene)
-    places = np.concatenate([point.position for point in motion.points.values()])
+    places, curves = places_of(scene, motion), pair_curves(scene)
     return {
         "name": scene.name,
         "longest_m": scene.longest_m,
@@ -142,6 +145,7 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
         "points": list(points),
         "guides": links,
         "sliders": [_slider(scene, name, motion) for name in scene.sliders],
+        **({"curves": [each.embedded() for each in curves]} if curves else {}),
         "box": [*places.min(axis=0), *places.max(axis=0)],
         "turning": goes_round(scene),
         "told": {
@@ -192,6 +196,7 @@ def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
         "angle": slider.direction_rad,
         "reach": [float(travel.min()), float(travel.max())],
         "along": packed(travel),
+        **({} if slider in blocks_of(scene) else {"bare": True}),
     }
 
 

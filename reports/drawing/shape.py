@@ -13,6 +13,7 @@ from models.array import Array
 from models.motion import Forces, Motion
 from models.scene import GROUND, Scene, Slider
 from models.scene.laws import Oscillating
+from reports.drawing.pair_curves import pair_curves, places_of
 from reports.protocol.way import way_of
 
 PATH_SAMPLES = 361
@@ -51,9 +52,9 @@ def clearest(path: Motion) -> int:
     return int(tried[int(np.argmax(pairs[:, :2].sum(axis=1)))])
 
 
-def box_of(path: Motion) -> tuple[Array, Array]:
-    """Return the corners of the shown box: all points at all times, and a margin."""
-    places = np.concatenate([point.position for point in path.points.values()])
+def box_of(scene: Scene, path: Motion) -> tuple[Array, Array]:
+    """Return the corners of the shown box: all points and curves at all times, and a margin."""
+    places = places_of(scene, path)
     low, high = places.min(axis=0), places.max(axis=0)
     size = float(np.max(high - low))
     # A mechanism on one line still needs some height.
@@ -61,9 +62,9 @@ def box_of(path: Motion) -> tuple[Array, Array]:
     return np.asarray(low - spare), np.asarray(high + spare)
 
 
-def size_of_motion(path: Motion) -> float:
+def size_of_motion(scene: Scene, path: Motion) -> float:
     """Return the size of the moving parts [m]: the longer side of their box, without the margin."""
-    low, high = box_of(path)
+    low, high = box_of(scene, path)
     return float(np.max(high - low)) / (1 + 2 * MARGIN)
 
 
@@ -267,6 +268,7 @@ def names(
     labels += [Label(name, size(name, False), _middle(bar), BAR) for name, bar in bars.items()]
     drawn = [p.position for name, p in path.points.items() if name not in scene.ground]
     drawn += [rail(slider, path, at, sheet.spare_m) for slider in scene.sliders.values()]
+    drawn += [curve for own in pair_curves(scene) for curve in own.at(path, at)]
     lines = sheet.place(np.concatenate(drawn))
     heavy = [_obstacles(scene, spots, bars)]
     heavy += [np.column_stack([sheet.place(p), np.full(len(p), BAR)]) for p in taken]

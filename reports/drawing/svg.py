@@ -17,6 +17,7 @@ from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_stands
 from reports.drawing import shape
 from reports.drawing.force_arrows import Arrow, ForceArrows, force_arrows
+from reports.drawing.pair_curves import blocks_of, pair_curves
 
 WIDTH, HEIGHT = 440, 320
 """Largest picture [px]; the mechanism's own shape makes it narrower or lower."""
@@ -58,12 +59,12 @@ def svg(
     """
     path = shape.turn_of(scene, SAMPLES, most_s, with_forces=with_forces)
     arrows = None if path.forces is None else force_arrows(scene, path)
-    low, high = shape.box_of(path) if arrows is None else arrows.box(path)
+    low, high = shape.box_of(scene, path) if arrows is None else arrows.box(path)
     at = shape.clearest(path) if arrows is None else arrows.largest_at(path)
     per_m = float(min(WIDTH / (high[0] - low[0]), HEIGHT / (high[1] - low[1])))
     wide, tall = (float(each) * per_m for each in high - low)
     paper = _Paper(float(low[0]), float(high[1]), per_m)
-    size = shape.size_of_motion(path)
+    size = shape.size_of_motion(scene, path)
     colours = shape.colours_of(scene, COLOURS)
     spare_m = 0.08 * size
     sheet = shape.Sheet(
@@ -77,8 +78,9 @@ def svg(
         *(_paths(scene, logged, paper, 'opacity="0.8" stroke-dasharray="3 4"') if logged else ()),
         *_guides(scene, path, at, paper, spare_m, colours),
         *(_feet(path.points[name].position[at], paper, size) for name in scene.ground),
+        *_curves(scene, path, at, paper, colours),
         *(_bar(scene, name, path, at, paper, colours[name]) for name in scene.links),
-        *(_block(slider, path, at, paper) for slider in scene.sliders.values()),
+        *(_block(slider, path, at, paper) for slider in blocks_of(scene)),
         *(_pin(point.position[at], paper) for point in path.points.values()),
         *(_arrow(each, paper, size, colours) for each in acting),
         *(_text(name, paper) for name in shape.names(scene, path, at, sheet, _size, taken)),
@@ -109,6 +111,16 @@ def _guides(
             f'<polyline points="{_points(paper.at(ends))}" stroke="{colour}" stroke-width="1.5" '
             'stroke-dasharray="7 4" opacity="0.8"/>'
         )
+
+
+def _curves(
+    scene: Scene, path: Motion, at: int, paper: _Paper, colours: dict[str, str]
+) -> Iterable[str]:
+    for own in pair_curves(scene):
+        colour, dim = colours.get(own.body, "currentColor"), 0.55 if own.body == GROUND else 1.0
+        look = f'stroke="{colour}" stroke-width="1.5" fill="{colour}" opacity="{dim}"'
+        d = "".join(f"M{_points(paper.at(curve))}Z" for curve in own.at(path, at))
+        yield f'<path d="{d}" {look} fill-opacity="0.12"/>'
 
 
 def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: str) -> str:

@@ -172,10 +172,10 @@ def _positions(course: ElasticCourse) -> Figure | None:
     """Draw the mechanism at six instants, evenly spread over the motion, from its start on, its
     deflection magnified, over the same with rigid links."""
     scene, base = course.scene, course.base
-    size = size_of_motion(base)
+    size = size_of_motion(scene, base)
     factor = magnification(course.motion, base, course.bent, size)
     own = Magnified(scene, course.motion, base, course.bent, factor)
-    low, high = box_of(base)
+    low, high = box_of(scene, base)
     low, high = low + 0.5 * MARGIN * size, high - 0.5 * MARGIN * size
     panels = Panels(ROWS, COLUMNS, 1.0, 0.06, 0.06, 0.22, 0.06, between=(0.1, 0.22))
     wide = (PAGE_IN - 0.12 - 2 * panels.between[0]) / COLUMNS
@@ -213,7 +213,7 @@ def _position(axes: Axes, own: Magnified, index: int, colours: dict[str, str]) -
         axes.plot(*outline.T, color=colours[name], linewidth=2.0, zorder=3)
     for slider in own.scene.sliders.values():
         place, direction = own.place(slider.point, index), guide_direction(slider, own.rigid, index)
-        reach = 0.06 * size_of_motion(own.rigid)
+        reach = 0.06 * size_of_motion(own.scene, own.rigid)
         axes.plot(*np.array([place - reach * direction, place + reach * direction]).T,
                   color=INK, linewidth=3.5, alpha=0.5, solid_capstyle="butt", zorder=2)  # fmt: skip
     pins = np.array([own.place(name, index) for name in own.rigid.points])

@@ -46,7 +46,7 @@ def draw(report: Report, name: str) -> Figure | None:
     longest = f"longest link L = {scene.longest_m:g} m"
     origin = f"crankcheck {own}, {truth}; driver {describe_law(scene)}; {longest}."
     under = [f"{scene.source}. {scene.note}", origin]
-    return mechanism_at(scene, path, at, box_of(path), title, under)
+    return mechanism_at(scene, path, at, box_of(scene, path), title, under)
 
 
 def mechanism_at(

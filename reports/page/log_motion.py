@@ -27,6 +27,7 @@ from models.motion import Motion
 from models.scene import GROUND, Link, Scene
 from reports.compare.compare import Truth
 from reports.drawing.moving import FARTHEST, INSTANTS, drawing, drawn_links, moving_points, packed
+from reports.drawing.pair_curves import places_of
 from reports.logs.channel import Reading
 from reports.output.numbers import listed
 from reports.own_log.judged import JudgedLog, log_rows
@@ -250,7 +251,7 @@ def log_motion(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | No
 def _drawing(truth: Motion, bodies: LoggedBodies) -> dict[str, object]:
     """Return the drawing of the reference, with room for the logged bodies."""
     shape = drawing(bodies.scene, truth.time_s, truth)
-    right = np.concatenate([point.position for point in truth.points.values()])
+    right = places_of(bodies.scene, truth)
     low, high = right.min(axis=0), right.max(axis=0)
     beyond = ROOM * float(np.max(high - low))
     logged = [

@@ -92,7 +92,7 @@ crankcheck.mechanism = (() => {
       return [exact[0] + moved[0], exact[1] + moved[1]];
     }
 
-    /** The angle of a slider's guide, as the reference or as a run has it. */
+    /** The angle of a slider's guide or of curves, as the reference or as a run has it. */
     function direction(slider, position, run) {
       const guide = scene.guides.indexOf(slider.on);
       if (guide < 0) return slider.angle;
@@ -114,6 +114,18 @@ crankcheck.mechanism = (() => {
       });
     }
 
+    /** The curves of one body about its point; a run has none on the ground, and of `only` its links. */
+    function outline(own, position, run) {
+      if (run && (own.body === "ground" || run.only?.links?.includes(own.body) === false)) return null;
+      const middle = own.point ? place(own.point, position, run) : [0, 0];
+      if (middle === null) return null;
+      const angle = direction(own, position, run);
+      const [c, s] = [Math.cos(angle), Math.sin(angle)];
+      const d = own.curves.map((curve) =>
+        `M${text(curve.map(([x, y]) => [middle[0] + c * x - s * y, middle[1] + s * x + c * y]))}Z`).join("");
+      return svg("path", { d, class: `curve${own.body === scene.driver ? " driver" : ""}` });
+    }
+
     /** The links and blocks of the reference or of a run; of a run that has `only` some, these. */
     function bodies(position, run) {
       const { links, blocks: those, marks } = run?.only ?? {};
@@ -127,7 +139,7 @@ crankcheck.mechanism = (() => {
         return path(corners, { class: kind }, plate);
       });
       const blocks = scene.sliders.map((slider) => {
-        if (those && !those.includes(slider.point)) return null;
+        if (slider.bare || (those && !those.includes(slider.point))) return null;
         const middle = place(slider.point, position, run);
         if (middle === null) return null;
         const angle = direction(slider, position, run);
@@ -143,7 +155,8 @@ crankcheck.mechanism = (() => {
         const [cx, cy] = toScreen(middle);
         return svg("circle", { class: "mark", cx, cy, r: 8 });
       });
-      return [...found, ...blocks, ...lone].filter(Boolean);
+      const curves = (scene.curves ?? []).map((own) => outline(own, position, run));
+      return [...curves, ...found, ...blocks, ...lone].filter(Boolean);
     }
 
     /** A line through the places of a point, in parts where some are missing. */

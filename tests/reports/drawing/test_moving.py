@@ -215,8 +215,10 @@ def test_numbers_are_written_by_their_kind(way: str, value: float | None, text: 
 
 SAMPLES = 37
 SVG = "{http://www.w3.org/2000/svg}"
-KINDS = ("fourbar-lecture-1", "shaper", "scotch-yoke", "tangent", "sixbar-stephenson")
-"""A chain, blocks on a lever and on the ground, a link that slides, a crank that locks, a plate."""
+KINDS = ("fourbar-lecture-1", "shaper", "scotch-yoke", "tangent", "sixbar-stephenson",
+         "planetary", "cam-flat")  # fmt: skip
+"""A chain, blocks on a lever and on the ground, a link that slides, a crank that locks, a plate, a
+ring around wheels, a cam with a face."""
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -232,7 +234,9 @@ def test_every_link_point_and_block_is_drawn_in_the_frame(name: str) -> None:
     assert len(bars) == len(scene.links)
     assert len({each.get("stroke") for each in bars}) == len(scene.links)
     for element in root.iter():
-        for x, y in re.findall(r"(-?[\d.]+),(-?[\d.]+)", element.get("points", "")):
+        for x, y in re.findall(
+            r"(-?[\d.]+),(-?[\d.]+)", element.get("points", element.get("d", ""))
+        ):
             assert -1 <= float(x) <= wide + 1
             assert -1 <= float(y) <= tall + 1
     for text in texts:

@@ -2,10 +2,12 @@
 that is on them."""
 
 import itertools
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from analytic.elastic.discretisation import Modes
@@ -40,7 +42,7 @@ BOXES = """all => all.map(each => {
 })"""
 
 
-def moved(wide: Tab, places: tuple[int, int], shapes: str, told: str) -> tuple[list[str], list]:
+def moved(wide: Tab, places: tuple[int, ...], shapes: str, told: str) -> tuple[list[str], list]:
     """What is told at two places of the slider, and the shapes there, which differ."""
     words, drawn = [], []
     for at in places:
@@ -116,6 +118,18 @@ def test_polygons_move_and_are_drawn_step_by_step(wide: Tab, written: Write) -> 
     assert 0 < arrows.count() < whole
     assert "driver" in wide.text("#polygons-step-title")
     assert "one point, as omega is 0" in wide.text("#polygons-links")
+
+
+def test_a_drawn_cam_turns_and_touches_its_roller(wide: Tab, written: Write) -> None:
+    wide.open(written(scene_page(load_scene("cam-roller"), {})))
+    _, drawn = moved(wide, (0, 20, 61), "#motion-picture .reference .curve", "#motion-angle")
+    for shapes in drawn:
+        cam, roller = (np.array(re.findall(r"[\d.]+", shape), float) for shape in shapes)
+        cam, roller = cam.reshape(-1, 2), roller.reshape(-1, 2)
+        fine = np.concatenate([cam + s * (np.roll(cam, 1, 0) - cam) for s in np.linspace(0, 1, 9)])
+        middle = roller.mean(axis=0)
+        gap = np.min(np.hypot(*(fine - middle).T)) - np.hypot(*(roller[0] - middle))
+        assert gap == pytest.approx(0.0, abs=0.1)  # pixels
 
 
 @pytest.fixture(scope="module")
