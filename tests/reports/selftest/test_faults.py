@@ -164,9 +164,9 @@ NO_FAULT_THERE = {
     "first-order", *(fault.name for fault in PAIRS),
 }  # fmt: skip
 """Through change points: what turns as its crank does comes out right to rounding in an engine too;
-there is no slider, gear or cam; the post stands beside another rocker, which turns steadily, with no
-acceleration that could be late; and parallel links have no error of angle, of first order or other:
-CC113 sees it. Forces near change points are shown, and not judged."""
+there is no slider, gear or cam; the post stands beside another rocker, which turns steadily, with
+no acceleration that could be late; and parallel links have no error of angle, of first order or
+other: CC113 sees it. Forces near change points are shown, and not judged."""
 
 
 THERE = [
