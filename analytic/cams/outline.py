@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.cams.base_circle import refuse_undercut
 from analytic.cams.profile import CamContact, Plane, touch
 from models.errors import CrankcheckError
 from models.scene import Scene
@@ -26,6 +25,8 @@ def _outlined(scene: Scene, pair: CamPair, facets: int | None) -> CamPair:
     count = pair.facets if facets is None else facets
     if pair.profile.follower.contact == "knife" or count == len(pair.outline):
         return replace(pair, facets=count)  # a knife edge has none: its engines say so
+    from analytic.cams.base_circle import refuse_undercut  # loads scipy, for cams by contact alone
+
     try:
         refuse_undercut(pair.profile)
     except CrankcheckError as error:

@@ -69,23 +69,21 @@ def touching(scene: Scene, body: str, softness: Attributes) -> Iterator[str]:
     for k, pair in enumerate(scene.cams.values()):
         if not pair.facets or body not in (pair.cam, pair.follower):
             continue
-        shape = follower_shape(scene, pair)
-        own: AttributeRow = {"condim": 1} | dict(softness)
-        own["contype" if body == pair.cam else "conaffinity"] = 1 << k
+        shape, rows = follower_shape(scene, pair), list[AttributeRow]()
         if body == pair.cam:
-            for here, there in pairwise((*pair.outline, pair.outline[0])):
-                row: AttributeRow = {"fromto": (*here, 0.0, *there, 0.0), "size": shape.skin_m}
-                yield f"<geom{attributes(row | own)}/>"
+            ends = pairwise((*pair.outline, pair.outline[0]))
+            rows = [{"fromto": (*a, 0.0, *b, 0.0), "size": shape.skin_m} for a, b in ends]
         elif shape.is_flat:
-            (x, y), (ux, uy) = shape.place, shape.away
-            off = shape.skin_m + shape.reach_m
-            row = {"type": "box", "pos": (x + off * ux, y + off * uy, 0.0)}
-            row["euler"] = (0.0, 0.0, math.atan2(-ux, uy))
-            row["size"] = (shape.reach_m, shape.reach_m, shape.reach_m)
-            yield f"<geom{attributes(row | own)}/>"
+            (x, y), (ux, uy), half = shape.place, shape.away, shape.reach_m
+            off = shape.skin_m + half
+            rows = [{"type": "box", "pos": (x + off * ux, y + off * uy, 0.0), "size": 3 * (half,)}]
+            rows[0]["euler"] = (0.0, 0.0, math.atan2(-ux, uy))
         else:
-            row = {"type": "sphere", "pos": (*shape.place, 0.0), "size": shape.ball_m}
-            yield f"<geom{attributes(row | own)}/>"
+            rows = [{"type": "sphere", "pos": (*shape.place, 0.0)}]
+            rows[0]["size"] = shape.roller_m - shape.skin_m
+        mask = "contype" if body == pair.cam else "conaffinity"
+        for row in rows:
+            yield f"<geom{attributes({**row, 'condim': 1, **softness, mask: 1 << k})}/>"
 
 
 class CamRelation:

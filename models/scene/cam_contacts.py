@@ -38,18 +38,18 @@ class FollowerShape:
     def is_flat(self) -> bool:
         return self.roller_m == 0.0
 
-    @property
-    def ball_m(self) -> float:
-        """Radius of the roller without the skin."""
-        return self.roller_m - self.skin_m
-
 
 def follower_shape(scene: Scene, pair: CamPair) -> FollowerShape:
     """Return the shape of the follower of a cam by contact. Raises EngineError for a follower
     without a body, a knife edge, and an outline that is not given."""
     follower, body = pair.profile.follower, pair.follower
-    if len(pair.outline) != pair.facets or follower.contact == "knife" or body not in bodies(scene):
-        raise EngineError(f"cams.{pair.name}: {_fault(pair)}")
+    for fault, words in (
+        (follower.contact == "knife", "a knife edge slips off corners; give it a roller"),
+        (body not in bodies(scene), f"{body} is no body; give its slider a mass_kg above 0"),
+        (len(pair.outline) != pair.facets, "no outline; see `analytic.cams.outline.outlined`"),
+    ):
+        if fault:
+            raise EngineError(f"cams.{pair.name} by contact: {words}, or facets = 0")
     farthest = max(math.hypot(*point) for point in pair.outline)
     skin = SKIN * (pair.profile.base_m if follower.is_flat else follower.roller_m)
     if not isinstance(follower, OscillatingFollower):
@@ -68,17 +68,3 @@ def follower_shape(scene: Scene, pair: CamPair) -> FollowerShape:
     if follower.is_flat:
         tip = pivot[0] + follower.face_m * away[0], pivot[1] + follower.face_m * away[1]
     return FollowerShape(tip, away, follower.roller_m, skin, 2.0 * (farthest + follower.pivot_m))
-
-
-def _fault(pair: CamPair) -> str:
-    if pair.profile.follower.contact == "knife":
-        return (
-            "a knife edge by contact slips off the corners of facets; give its follower a roller, "
-            "or hold it as a relation (facets = 0)"
-        )
-    if len(pair.outline) != pair.facets:
-        return (
-            f"found {len(pair.outline)} points of its outline for {pair.facets} facets; give "
-            "the scene `analytic.cams.outline.outlined(scene)`"
-        )
-    return f"its follower, {pair.follower}, is no body; give its slider a mass_kg above 0"

@@ -99,21 +99,17 @@ def double_parallelogram(name: str, *, source: str) -> Scene:
     return _scene(name, source, "A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.0]", rods)
 
 
-def sprung_cam(name: str, *, source: str, speed_rad_s: float, facets: int) -> Scene:
+def sprung_cam(name: str, *, source: str, facets: int) -> Scene:
     """An eccentric circle that lifts a flat face of half a kilogram by 20 mm, along y, against a
     spring of 400 N/m that presses with 36 N at lift 0; held by contact."""
     half = "motion = 'harmonic', span_deg = 180.0, lift_m"
     lifter = "points = { C = [0.0, 0.0], D = [0.0, 0.1] }, mass_kg = 0.5"
     bodies = _rods(crank=("AB", 0.05), lifter=lifter)
     bodies += f"""
-[sliders.C]
-link = "lifter"
-on = "ground"
-direction_deg = 90.0
-[springs.C]
-slider = "C"
-rate_n_m = 400.0
-free_m = -0.05
+[sliders]
+C = {{ link = "lifter", on = "ground", direction_deg = 90.0 }}
+[springs]
+C = {{ slider = "C", rate_n_m = 400.0, free_m = -0.05 }}
 [cams.C]
 cam = "crank"
 slider = "C"
@@ -122,7 +118,7 @@ base_radius_m = 0.04
 facets = {facets}
 segments = [{{ {half} = 0.02 }}, {{ {half} = -0.02 }}]
 """
-    return _scene(name, source, "A = [0.0, 0.0]", bodies, _turning(0.0, speed_rad_s))
+    return _scene(name, source, "A = [0.0, 0.0]", bodies, _turning(0.0))
 
 
 def _fourbar(

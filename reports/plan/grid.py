@@ -65,7 +65,7 @@ def grid(study: Study) -> Grid:
     refuse_endless(study)
     scenes = scenes_of(study.scenes, free=study.free)
     texts = scene_texts(study.scenes)
-    scenes = by_contact(scenes, study.facets, "--facets")
+    scenes = by_contact(scenes, study.facets)
     texts |= {scene.name: scene_text(scene) for scene in scenes if scene.name not in texts}
     refuse_rigid(scenes, study.segments or None, study.springs or None)
     variants = [one for variant in study.variants for one in variant.each()]

@@ -276,32 +276,24 @@ def given_of(scenes: Iterable[Scene], segments: int | None, springs: str | None)
     return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))
 
 
-def named(name: str, end: str) -> str:
-    """Return a name of a scene with an end, as long as names may be."""
-    return name[: MOST_LETTERS - len(end)] + end
-
-
-def by_contact(scenes: Iterable[Scene], counts: Sequence[int], option: str) -> list[Scene]:
+def by_contact(scenes: Iterable[Scene], counts: Sequence[int]) -> list[Scene]:
     """Return the scenes with their cams by contact, under a name of its own for each number of
     facets; as they are for none. Raises CrankcheckError where no scene has a cam, for a number out
     of range, and as `outlined`."""
     every = list(scenes)
-    if not counts:
-        return every
-    for count in counts:
-        if not LEAST_FACETS <= count <= MOST_FACETS:
-            raise CrankcheckError(
-                f"{option}: found {count}; a cam by contact has {LEAST_FACETS} to {MOST_FACETS}"
-            )
-    if not any(scene.cams for scene in every):
-        raise CrankcheckError(f"{option}: it is of cams, and no scene has one; leave {option} out")
-    return [
-        replace(outlined(scene, count), name=named(scene.name, f"-{count}-facets"))
-        if scene.cams
-        else scene
-        for scene in every
-        for count in (dict.fromkeys(counts) if scene.cams else [0])
-    ]
+    if wrong := [count for count in counts if not LEAST_FACETS <= count <= MOST_FACETS]:
+        some = f"{LEAST_FACETS} to {MOST_FACETS}"
+        raise CrankcheckError(f"--facets: found {wrong[0]}; a cam by contact has {some}")
+    if counts and not any(scene.cams for scene in every):
+        raise CrankcheckError("--facets: it is of cams, and no scene has one; leave --facets out")
+    made = []
+    for scene in every:
+        for count in dict.fromkeys(counts if scene.cams else ()):
+            end = f"-{count}-facets"
+            name = scene.name[: MOST_LETTERS - len(end)] + end
+            made.append(replace(outlined(scene, count), name=name))
+        made += [] if counts and scene.cams else [scene]
+    return made
 
 
 def rigid_alone(what: str) -> Callable[[Scene], None]:

@@ -113,8 +113,7 @@ class RunRequest:
     def answer(self) -> Simulation:
         """The run, logged. Raises CrankcheckError for a faulty request, before the run."""
         facets = [] if self.facets is None else [self.facets]
-        scene = under_control(arguments.scene_of(self.scene))
-        (scene,) = by_contact([scene], facets, "--facets")
+        (scene,) = by_contact([under_control(arguments.scene_of(self.scene))], facets)
         engine = FIRST if self.engine is None else self.engine
         name, profile = arguments.engine_of(engine, self.profile, self.settings)
         drive = _drive(scene, self.drive)

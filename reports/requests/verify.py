@@ -103,7 +103,7 @@ def plan(request: VerifyOptions) -> list[Cell]:
     if not request.forces:
         tolerance.refuse_forces_unasked("--tol", limits)
     facets = [] if request.facets is None else [request.facets]
-    scenes = requirements.by_contact(_scenes(request), facets, "--facets")
+    scenes = requirements.by_contact(_scenes(request), facets)
     _refuse_options(request, scenes)
     tolerance.refuse_of_other_kinds("--tol", limits, (way_of(scene).limits for scene in scenes))
     engines = requirements.chosen_engines(request.engines)

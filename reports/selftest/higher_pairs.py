@@ -80,7 +80,7 @@ PAIRS = (
     _disc("cam-turned", "the profile is turned on its shaft",
           plant=_cam(lambda pair, by: replace(pair, start_rad=pair.start_rad + by)),
           size=math.radians(1.0), unit="rad"),
-    _disc("cam-backwards", "the profile is mounted the other way round",
+    _disc("cam-backwards", "the profile runs the other way round",
           plant=_cam(lambda pair, _: _profile(pair, sense=-pair.profile.sense))),
     _disc("cam-law", "another law of the same stroke", plant=_cam(_other_law)),
     _disc("cam-stroke", "a larger stroke",
@@ -89,6 +89,6 @@ PAIRS = (
     _disc("cam-base", "a larger base circle",
           plant=_cam(lambda pair, by: _profile(pair, base_m=pair.profile.base_m * (1.0 + by))),
           size=1e-3, unit="of it"),
-    _disc("contact-lost", "the follower is off its cam for three samples",
-          plant=fault.in_log(_lifted), size=1e-2, unit="of the stroke"),
+    _disc("contact-lost", "contact is lost for three samples",
+          plant=fault.in_log(_lifted), size=1e-2, unit="of it"),
 )  # fmt: skip

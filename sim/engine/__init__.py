@@ -201,10 +201,10 @@ class Engine:
     forces: ". Without ``applies_loads`` scenes with loads are unsupported, without
     ``applies_constant_friction`` scenes with constant friction, without ``applies_springs`` scenes
     with springs, without ``applies_gears``, ``applies_cams`` (as a relation) and
-    ``applies_touching_cams`` (by contact) scenes with these; with springs `Facts.springs` has each.
-    Without ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the
-    beams. ``precision`` is that of the engine's numbers, ``floor`` the pure error of places that it
-    leaves at any step.
+    ``applies_cams_by_contact`` scenes with these; with springs `Facts.springs` has each. Without
+    ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the beams.
+    ``precision`` is that of the engine's numbers, ``floor`` the pure error of places that it leaves
+    at any step.
     """
 
     name: str
@@ -223,7 +223,7 @@ class Engine:
     applies_springs: bool = False
     applies_gears: bool = False
     applies_cams: bool = False
-    applies_touching_cams: bool = False
+    applies_cams_by_contact: bool = False
     applies_beams: bool = False
     precision: Precision = "double"
     floor: float = AT_ROUNDING

@@ -131,6 +131,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
     held = holds(settings, dt_s, drive)
     scale = joints.inertia_scale(scene) * scene.pace_rad_s
     solimp = (*(float(settings[name]) for name in OF_IMPEDANCE), 0.5, 2.0)
+    contact = "enable" if touches(scene) else str(settings["contact"])
     damping, driven = float(settings["solref_dampratio"]), holds(settings, dt_s, "prescribed")
     return options.Writing(
         close=tuple(p.strip() for p in re.split("[+,]", str(settings["close"])) if p.strip()),
@@ -141,7 +142,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> opti
             "iterations": _iterations(scene, settings, drive)[0],
             "tolerance": float(held["tolerance"]),
         },
-        flag={"island": str(settings["islands"]), "contact": contact_of(scene, settings)},
+        flag={"island": str(settings["islands"]), "contact": contact},
         connect={"solref": (float(held["solref_timeconst_s"]), damping), "solimp": solimp},
         rubbing={"solref": (float(driven["solref_timeconst_s"]), damping), "solimp": solimp},
         flywheel_ratio=float(settings["flywheel_ratio"]),
@@ -175,11 +176,6 @@ def touches(scene: Scene) -> bool:
     return any(pair.facets for pair in scene.cams.values())
 
 
-def contact_of(scene: Scene, settings: Settings) -> str:
-    """Return the setting of contact, which cams by contact need."""
-    return "enable" if touches(scene) else str(settings["contact"])
-
-
 def weight_share(scene: Scene, settings: Settings, drive: Drive) -> float:
     """Return the ratio of the bodies' inverse weights in free motion to the compiled ones.
 
@@ -198,8 +194,8 @@ def held(
     of the bodies' inverse weights to the compiled ones."""
     given, cause = _iterations(scene, settings, drive)
     told = as_held("iterations", int(settings["iterations"]), given, iterations, cause)
-    contact, cams = contact_of(scene, settings), "cams" if touches(scene) else ""
-    told |= as_held("contact", str(settings["contact"]), contact, contact, cams)
+    if touches(scene):
+        told |= as_held("contact", str(settings["contact"]), "enable", "enable", "cams")
     if drive != "free":
         return told
     asked, scaled = settings["free_inverse_weight_share"], weight_share(scene, settings, drive)

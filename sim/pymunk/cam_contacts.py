@@ -33,7 +33,7 @@ def add_contact(placed: SpaceBodies, pair: CamPair, number: int) -> None:
         shapes.append(pymunk.Poly(follower, face))
     else:
         place = placed.from_centre(pair.follower, shape.place)
-        shapes.append(pymunk.Circle(follower, shape.ball_m, place))
+        shapes.append(pymunk.Circle(follower, shape.roller_m - shape.skin_m, place))
     for each in shapes:
         each.filter = pymunk.ShapeFilter(categories=1 << number, mask=1 << number)
         each.friction = each.elasticity = 0.0
@@ -51,12 +51,6 @@ def correct(space: pymunk.Space, error_bias: float) -> None:
 def _face(shape: FollowerShape) -> list[Point]:
     """Return the corners of a flat follower."""
     (x, y), (ux, uy), reach = shape.place, shape.away, shape.reach_m
-    return [
-        (x + off * ux - side * uy, y + off * uy + side * ux)
-        for off, side in (
-            (shape.skin_m, reach),
-            (shape.skin_m, -reach),
-            (shape.skin_m + reach, -reach),
-            (shape.skin_m + reach, reach),
-        )
-    ]
+    low, high = shape.skin_m, shape.skin_m + reach
+    corners = (low, reach), (low, -reach), (high, -reach), (high, reach)
+    return [(x + off * ux - side * uy, y + off * uy + side * ux) for off, side in corners]

@@ -244,5 +244,5 @@ ENGINE = Engine(
     applies_springs=True,
     applies_gears=True,
     applies_cams=True,
-    applies_touching_cams=True,
+    applies_cams_by_contact=True,
 )

@@ -207,7 +207,7 @@ def available() -> tuple[Availability, ...]:
 
 
 def applying(what: str) -> list[str]:
-    """List the installed shipped engines that have "beams" of their own, or "gears"."""
+    """List the installed shipped engines that have "beams" of their own, "gears", "cams", ...."""
     flag = f"applies_{what}"
     return [one.name for one in available() if one.version and getattr(engine(one.name), flag)]
 

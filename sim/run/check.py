@@ -1,7 +1,7 @@
 """Comparison of the model in the engine with the requested scene, before the first step."""
 
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
@@ -21,10 +21,6 @@ CLOSED = 10.0
 longest link: the inverse of a fair transmission angle, and of a short link."""
 ROUNDINGS = 16.0
 """Units of the last place of an engine's numbers that both of these allow at least."""
-
-
-KEYS = {"cams by contact": "touching_cams"}
-"""Keys of engines' properties, where they are not the words."""
 
 
 class OtherModelError(EngineError):
@@ -75,29 +71,30 @@ def refuse_unknown_forces(
     """Refuse loads, springs or friction that an engine would silently leave out, and forces of an
     engine that reports none; for beams and gears the message names the engines ``applying`` them.
     Raises EngineError."""
-    given: Collection[str]
-    for what, given, applied in (
-        ("loads", scene.loads, engine.applies_loads),
-        ("springs", scene.springs, engine.applies_springs),
-    ):
-        if given and not applied:
+    for what in ("loads", "springs"):
+        given = getattr(scene, what)
+        if given and not getattr(engine, f"applies_{what}"):
             names = ", ".join(f"{what}.{name}" for name in given)
             raise EngineError(
                 f"{scene.name}: {engine.name} is given no {what} ({names}); take them out to run "
                 "it, or use the reference alone"
             )
     touching = [name for name, pair in scene.cams.items() if pair.facets]
-    segments = "links that do not stretch as rigid segments with springs (--springs plain)"
-    for what, given, applied, cure in (
-        ("beams", scene.beams, engine.applies_beams, f"give it {segments}"),
-        ("gears", scene.gears, engine.applies_gears, "run one of those"),
-        ("cams", scene.cams, engine.applies_cams, "run one of those"),
-        ("cams by contact", touching, engine.applies_touching_cams, "give it facets = 0"),
+    segments = (
+        "it may be given links that do not stretch as rigid segments with springs between them "
+        "(--springs plain)"
+    )
+    for what, held, cure in (
+        ("beams", scene.beams, segments),
+        ("gears", scene.gears, "run one of those"),
+        ("cams", scene.cams, "run one of those"),
+        ("cams by contact", touching, "give it facets = 0"),
     ):
-        if given and not applied:
-            able = " or ".join(applying(KEYS.get(what, what))) or "no engine here"
+        flag = what.replace(" ", "_")
+        if held and not getattr(engine, f"applies_{flag}"):
+            able = " or ".join(applying(flag)) or "no engine here"
             raise EngineError(
-                f"{scene.name}: {what} ({', '.join(given)}) in {engine.name} are not offered by "
+                f"{scene.name}: {what} ({', '.join(held)}) in {engine.name} are not offered by "
                 f"crankcheck, but in {able}; {cure}"
             )
     for name, pair in scene.cams.items():

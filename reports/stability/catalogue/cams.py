@@ -1,13 +1,15 @@
 """Cams by contact: the speed at which a follower leaves its cam."""
 
+from dataclasses import replace
 from functools import cache, partial
 
 from analytic.cams.contact_force import FollowerLoad, lift_off
 from analytic.cams.outline import outlined
 from models.scene import Scene, hard
-from models.scene.loads import SlideSpring
+from models.scene.laws import ConstantSpeed
 from reports.stability.case import Case, Trial
 
+SOURCE = "made up"
 STEPS, FACETS = 2000.0, 720
 OPEN = 4e-4
 """Opening over the longest link beyond which a follower has left: at lower speeds it flies over the
@@ -15,34 +17,24 @@ corners of the facets by a third of that."""
 
 
 @cache
-def _cam(speed_rad_s: float) -> Scene:
-    scene = hard.sprung_cam("sprung-cam", source="made up", speed_rad_s=speed_rad_s, facets=FACETS)
-    return outlined(scene)
-
-
-@cache
-def lift_off_rad_s() -> float:
-    """Return the speed at which the follower of the cases leaves by the closed form."""
-    scene = _cam(1.0)
+def _cam(ratio: float) -> Scene:
+    """Return the cam at a speed over that of lift-off, by the closed form."""
+    scene = hard.sprung_cam("sprung-cam", source=SOURCE, facets=FACETS)
     pair, spring = scene.cams["C"], scene.springs["C"]
-    assert isinstance(spring, SlideSpring)
     preload = spring.rate * (pair.lowest(scene.points_of, scene.sliders) - spring.free)
     load = FollowerLoad(scene.links[pair.follower].mass_kg, spring.rate, preload)
-    return lift_off(pair.profile, load).omega_rad_s
-
-
-def _turned(ratio: float) -> Trial:
-    return Trial(_cam(ratio * lift_off_rad_s()), steps_per_turn=STEPS, turns=1.0)
+    law = ConstantSpeed(0.0, ratio * lift_off(pair.profile, load).omega_rad_s)
+    return outlined(replace(scene, driver=replace(scene.driver, law=law)))
 
 
 _case = partial(
     Case,
-    source="made up; `models.scene.hard.sprung_cam`",
+    source=SOURCE,
     truth="the speed at which spring and inertia leave no contact force, in closed form",
     parameter="speed over that of lift-off",
     within=OPEN,
     scale="linear",
-    trial=_turned,
+    trial=lambda ratio: Trial(_cam(ratio), steps_per_turn=STEPS, turns=1.0),
 )
 CAMS = (
     _case(

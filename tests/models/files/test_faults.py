@@ -113,7 +113,7 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
         "no teeth": ("teeth = [20, 40]", "", "gears.inner.teeth: missing"),
         "part of a tooth": ("[20, 40]", "[20, 40.5]", "gears.inner.teeth.1: found 40.5; input should be a valid integer"),
         "no tooth": ("[20, 40]", "[0, 40]", "gears.inner.teeth.0: found 0; input should be greater than or equal to 1"),
-        "gear that is not pinned": ("planet]\npoints = { P", "planet]\npoints = { R", "gears.inner: planet shares no point with its carrier arm; a gear turns on its carrier about one point"),
+        "gear that is not pinned": ("planet]\npoints = { P", "planet]\npoints = { R", "gears.inner: planet shares no point with its carrier arm; it turns on its carrier about one point"),
         "gear fixed to its carrier": ("Q = [0.04, 0.0]", "O = [-0.06, 0.0]", "gears.inner: planet shares P and O with its carrier arm"),
         "small ring": ("[40, 100]", "[40, 40]", "gears.outer: teeth are 40 and 40; the second of an internal pair is the ring, which has more teeth"),
         "module that does not fit": ("module_m = 0.002", "module_m = 0.0025", "gears.inner.module_m: 0.0025 with 20 and 40 teeth asks for a centre distance of 0.075 m, found 0.06 m; use 0.002,"),

@@ -13,6 +13,7 @@ from reports.judge.rules import RULES
 from reports.selftest import trial
 from reports.selftest.elastic_changes import LOOSE
 from reports.selftest.fault import FOURBAR, INSIDE
+from reports.selftest.higher_pairs import PAIRS
 from reports.selftest.trial import FAULTS, FaultTrial, healthy, passed_by, passes, tried
 from tests.worlds.engines import FULL
 from tests.worlds.tiers import few, slow, slowly
@@ -160,10 +161,10 @@ NO_FAULT_THERE = {
     "halved-again", "too-good-degrees", "too-good-next", "too-good-link", "too-good-point",
     "too-good-velocity", "too-good-speeds", "too-good-gaps", "too-good-crank", "too-good-finer",
     "too-good-slider", "line-turned", "origin-off", "body-collides", "acceleration-late",
-    "first-order",
+    "first-order", *(fault.name for fault in PAIRS),
 }  # fmt: skip
 """Through change points: what turns as its crank does comes out right to rounding in an engine too;
-there is no slider; the post stands beside another rocker, which turns steadily, with no
+there is no slider, gear or cam; the post stands beside another rocker, which turns steadily, with no
 acceleration that could be late; and parallel links have no error of angle, of first order or other:
 CC113 sees it. Forces near change points are shown, and not judged."""
 

@@ -1,0 +1,57 @@
+"""Facets on the command line: cams by contact beside those held as a relation."""
+
+from pathlib import Path
+
+import pytest
+
+import crankcheck
+from models.files.assemble import scene_text
+from models.files.reading import load_scene
+from tests.worlds.command_line import crank_alone, flat, refused
+from tests.worlds.touching_cams import sprung
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    path = tmp_path / "sprung.toml"
+    path.write_text(scene_text(sprung()), encoding="utf-8")
+    return path
+
+
+def test_both_ways_are_named_in_tables(scene: Path) -> None:
+    words = ["verify", scene, "--engine", "mujoco", "--profile", "tuned", "--turns", "0.5"]
+    words += ["--no-convergence", "--steps-per-turn", "360"]
+    relation, contact = (crank_alone(*words, *more) for more in ((), ("--facets", "90")))
+    assert "sprung, cam disc: as a relation." in flat(relation.output)
+    assert "sprung-90-facets, cam disc: by contact, 90 facets." in flat(contact.output)
+    assert contact.exit_code == 0
+
+
+def test_a_sweep_over_facets_has_a_scene_for_each_number(scene: Path, tmp_path: Path) -> None:
+    done = crankcheck.sweep(
+        str(scene), tmp_path / "store", engines="mujoco", profiles="tuned", facets=[24, 48],
+        steps_per_turn=90, turns=1, timing=False, jobs=1,
+    )  # fmt: skip
+    assert sorted(set(done.frame()["scene"])) == ["sprung-24-facets", "sprung-48-facets"]
+
+
+def test_facets_of_a_file_are_kept_and_run(scene: Path) -> None:
+    text = scene.read_text(encoding="utf-8").replace("[cams.disc]", "[cams.disc]\nfacets = 60")
+    scene.write_text(text, encoding="utf-8")
+    assert "facets = 60" in scene_text(load_scene(scene))
+    done = crankcheck.run(scene, "pymunk", turns=0.1)
+    assert done.status == "ok"
+    assert done.settings["collision_slop_of_cams"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "facets", "message"),
+    [
+        ("fourbar-lecture-1", 90, "--facets: it is of cams, and no scene has one"),
+        ("", 9, "--facets: found 9; a cam by contact has 12 to 10000"),
+    ],
+)
+def test_facets_that_mean_nothing_are_refused(
+    scene: Path, name: str, facets: int, message: str
+) -> None:
+    refused(crank_alone("verify", name or scene, "--facets", facets), message)
