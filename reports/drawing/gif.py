@@ -11,11 +11,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import PathPatch
-from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from PIL import Image
 
@@ -211,12 +208,13 @@ def draw_bodies(
         if name not in scene.ground:
             axes.plot(*point.position.T, color=GUIDE, linewidth=line, zorder=1)
     colours = shape.colours_of(scene)
-    blocks = blocks_of(scene)
-    for slider in scene.sliders.values():
+    for slider in blocks_of(scene):
         rail = GUIDE if slider.on == GROUND else colours[slider.on]
-        _slider(axes, slider, rail, motion, path, index, size, slider in blocks)
+        _slider(axes, slider, rail, motion, path, index, size)
     for own in pair_curves(scene):
-        _curves(axes, own.at(motion, index), colours.get(own.body, GUIDE))
+        colour = colours.get(own.body, GUIDE)
+        for curve in own.at(motion, index):
+            axes.fill(*curve.T, fc=(colour, 0.12), ec=colour, linewidth=1.2, zorder=2.5)
     for name, link in scene.links.items():
         ends = [motion.points[point].position[index] for point in link.points]
         _link(axes, ends, colours[name])
@@ -226,13 +224,6 @@ def draw_bodies(
             axes.fill(*shape.foot_of(place, size).T, color=INK, alpha=0.75, linewidth=0, zorder=2)
         axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
     return size
-
-
-def _curves(axes: Axes, curves: Sequence[Array], colour: str) -> None:
-    """Draw closed curves of one body, all but its holes filled."""
-    rings = [Path(np.vstack([each, each[:1]]), closed=True) for each in curves]
-    look: dict[str, Any] = {"facecolor": to_rgba(colour, 0.12), "edgecolor": colour}
-    axes.add_patch(PathPatch(Path.make_compound_path(*rings), linewidth=1.2, zorder=2.5, **look))
 
 
 def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
@@ -252,9 +243,8 @@ def _slider(
     path: Motion,
     index: int,
     size: float,
-    has_block: bool,
 ) -> None:
-    """Draw the guide as far as the slider runs on it, and the block if it has one."""
+    """Draw the guide as far as the slider runs on it, and the block."""
     travel = path.sliders[slider.name].displacement
     place = motion.points[slider.point].position[index]
     along = float(motion.sliders[slider.name].displacement[index])
@@ -263,8 +253,6 @@ def _slider(
     ends = [travel.min() - reach - along, travel.max() + reach - along]
     rail = place + np.outer(ends, direction)
     axes.plot(*rail.T, color=colour, linewidth=1.4, linestyle=(0, (6, 3)), zorder=2)
-    if not has_block:
-        return
     half = np.array([[-1, -0.6], [1, -0.6], [1, 0.6], [-1, 0.6]]) * 0.045 * size
     across = np.array([-direction[1], direction[0]])
     corners = place + half @ np.array([direction, across])

@@ -114,8 +114,7 @@ def instants(scene: Scene, turns: float = 1.0) -> Array:
 
 def drawn_links(scene: Scene) -> list[str]:
     """Return the links whose angle a drawing needs: those that carry a guide or curves."""
-    turning = [slider.on for slider in scene.sliders.values()]
-    turning += [each.on for each in pair_curves(scene)]
+    turning = [s.on for s in scene.sliders.values()] + [own.on for own in pair_curves(scene)]
     return list(dict.fromkeys(name for name in turning if name != GROUND))
 
 
@@ -145,7 +144,7 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
         "points": list(points),
         "guides": links,
         "sliders": [_slider(scene, name, motion) for name in scene.sliders],
-        **({"curves": [each.embedded() for each in curves]} if curves else {}),
+        **({"curves": [vars(each) for each in curves]} if curves else {}),
         "box": [*places.min(axis=0), *places.max(axis=0)],
         "turning": goes_round(scene),
         "told": {

@@ -17,7 +17,7 @@ from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_stands
 from reports.drawing import shape
 from reports.drawing.force_arrows import Arrow, ForceArrows, force_arrows
-from reports.drawing.pair_curves import blocks_of, pair_curves
+from reports.drawing.pair_curves import BodyCurves, blocks_of, pair_curves
 
 WIDTH, HEIGHT = 440, 320
 """Largest picture [px]; the mechanism's own shape makes it narrower or lower."""
@@ -71,6 +71,7 @@ def svg(
         low, (wide / INCH, tall / INCH), per_m / INCH, spare_m, math.hypot(*BLOCK) / INCH
     )
     title = f"{scene.name}, {driver_stands(scene, path, at)}"
+    curves = pair_curves(scene)
     acting = arrows.at(path, at) if arrows else []
     taken = [each.shaft for each in acting]
     parts = [
@@ -78,7 +79,7 @@ def svg(
         *(_paths(scene, logged, paper, 'opacity="0.8" stroke-dasharray="3 4"') if logged else ()),
         *_guides(scene, path, at, paper, spare_m, colours),
         *(_feet(path.points[name].position[at], paper, size) for name in scene.ground),
-        *_curves(scene, path, at, paper, colours),
+        *(_curves(own, path, at, paper, colours.get(own.body, "currentColor")) for own in curves),
         *(_bar(scene, name, path, at, paper, colours[name]) for name in scene.links),
         *(_block(slider, path, at, paper) for slider in blocks_of(scene)),
         *(_pin(point.position[at], paper) for point in path.points.values()),
@@ -113,14 +114,11 @@ def _guides(
         )
 
 
-def _curves(
-    scene: Scene, path: Motion, at: int, paper: _Paper, colours: dict[str, str]
-) -> Iterable[str]:
-    for own in pair_curves(scene):
-        colour, dim = colours.get(own.body, "currentColor"), 0.55 if own.body == GROUND else 1.0
-        look = f'stroke="{colour}" stroke-width="1.5" fill="{colour}" opacity="{dim}"'
-        d = "".join(f"M{_points(paper.at(curve))}Z" for curve in own.at(path, at))
-        yield f'<path d="{d}" {look} fill-opacity="0.12"/>'
+def _curves(own: BodyCurves, path: Motion, at: int, paper: _Paper, colour: str) -> str:
+    d = "".join(f"M{_points(paper.at(curve))}Z" for curve in own.at(path, at))
+    dim = 0.55 if own.body == GROUND else 1.0
+    look = f'stroke="{colour}" stroke-width="1.5" fill="{colour}" fill-opacity="0.12"'
+    return f'<path d="{d}" {look} opacity="{dim}"/>'
 
 
 def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: str) -> str:

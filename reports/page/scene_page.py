@@ -25,15 +25,9 @@ from reports.describe.elastic_words import (
 )
 from reports.describe.force_tables import friction_words, largest_of
 from reports.describe.free_motion import free_notes, instants
+from reports.drawing import moving
 from reports.drawing.force_arrows import force_arrows
-from reports.drawing.moving import (
-    INSTANTS,
-    drawing,
-    drawn_links,
-    magnification,
-    moving_points,
-    packed,
-)
+from reports.drawing.moving import INSTANTS, drawing, magnification, moving_points, packed
 from reports.drawing.shape import size_of_motion, turn_of
 from reports.output.numbers import count
 from reports.output.write import crankcheck_version
@@ -230,9 +224,8 @@ def _elastic(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, 
     turns = motion.until_s / scene.driver.law.period_s
     count = int(np.clip(round((INSTANTS - 1) * turns), INSTANTS - 1, MOST - 1)) + 1
     course = elastic_course.elastic_course(motion, np.linspace(0.0, motion.until_s, count))
-    factor = magnification(
-        course.motion, course.base, course.bent, size_of_motion(scene, course.base)
-    )
+    size_m = size_of_motion(scene, course.base)
+    factor = magnification(course.motion, course.base, course.bent, size_m)
     drawn = drawing(scene, course.time_s, course.base)
     if not isinstance(scene.driver.law, ConstantSpeed) or turns > 1.0 + 1e-9:
         drawn |= {"until_s": motion.until_s}
@@ -278,7 +271,7 @@ def _moved(course: ElasticCourse) -> Array:
         for name in moving_points(course.scene)
         for row in (bent.points[name].position - base.points[name].position).T
     ]
-    turning = drawn_links(course.scene)
+    turning = moving.drawn_links(course.scene)
     rows += [bent.links[name].theta - base.links[name].theta for name in turning]
     return np.array(rows)
 

@@ -117,9 +117,9 @@ crankcheck.mechanism = (() => {
     /** The curves of one body about its point; a run has none on the ground, and of `only` its links. */
     function outline(own, position, run) {
       if (run && (own.body === "ground" || run.only?.links?.includes(own.body) === false)) return null;
-      const middle = own.point ? place(own.point, position, run) : [0, 0];
+      const middle = place(own.point, position, run);
       if (middle === null) return null;
-      const angle = direction(own, position, run);
+      const angle = direction({ on: own.on, angle: own.angle_rad }, position, run);
       const [c, s] = [Math.cos(angle), Math.sin(angle)];
       const d = own.curves.map((curve) =>
         `M${text(curve.map(([x, y]) => [middle[0] + c * x - s * y, middle[1] + s * x + c * y]))}Z`).join("");

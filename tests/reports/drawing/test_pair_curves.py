@@ -49,7 +49,7 @@ def test_a_drawn_follower_touches_the_drawn_profile_all_around(name: str) -> Non
 def pitch_m(own: BodyCurves) -> float:
     """The radius at the outer end of a spoke, or at the inner end of a tick of a ring."""
     inner, outer = np.hypot(*own.curves[-1].T)
-    assert len(own.curves) == (2 + TICKS if inner else 1 + SPOKES)
+    assert len(own.curves) == (1 + TICKS if inner else 1 + SPOKES)
     return float(inner or outer)
 
 
