@@ -89,9 +89,9 @@ class Prepared:
         back after as many as it has assemblies, or ends; one on gears with theirs."""
         if self.scene.driver.slider is not None:
             return 1
-        own = [step.period(self.passages) for step in self.steps if isinstance(step, PeriodicStep)]
-        longest = max((one or math.tau for one in own), default=math.tau)
-        return MOST_ASSEMBLIES if self.followed else round(longest / math.tau)
+        if self.followed or not any(isinstance(step, PeriodicStep) for step in self.steps):
+            return MOST_ASSEMBLIES if self.followed else 1
+        return round(self.period / math.tau)
 
     @property
     def period(self) -> float:

@@ -55,7 +55,8 @@ FLOORS: Mapping[str, str] = {
         result
         change_points
         dyads
-        structure multibody cams gears
+        multibody cams gears
+        structure
     """,
     "sim": f"""
         {" ".join(ENGINES)}

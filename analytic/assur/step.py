@@ -239,7 +239,8 @@ class AssurStep(FollowedStep):
             repeats = common_period(self.steps_before, passages)
         return AssemblyTrack(rows, pose, self.mounting.size_m, repeats)
 
-    def period(self, passages: Mapping[str, Passage]) -> float | None:
+    def period(self, passages: Mapping[str, Passage], base: float) -> float | None:
+        del base  # its own track has it
         return self.track(passages).period
 
     def end_in_words(self, passages: Mapping[str, Passage], theta: float) -> str:

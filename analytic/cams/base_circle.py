@@ -11,7 +11,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.cams.profile import largest, touch, turn_of
 from models.array import Array
@@ -96,6 +95,9 @@ def least_base(
         )
     high = tried[kept][0]
     if kept and math.isfinite(tried[kept - 1][1]):
+        # scipy is slow to import, and few need it
+        from scipy.optimize import brentq  # type: ignore[import-untyped]  # ships no stubs
+
         high = brentq(at, tried[kept - 1][0], high, xtol=1e-15, rtol=1e-14)
     return float(follower.base(high))
 

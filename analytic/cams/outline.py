@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from analytic.cams.base_circle import refuse_undercut
 from analytic.cams.profile import CamContact, Plane, touch
 from models.errors import CrankcheckError
 from models.scene import Scene
@@ -23,10 +24,8 @@ def outlined(scene: Scene, facets: int | None = None) -> Scene:
 
 def _outlined(scene: Scene, pair: CamPair, facets: int | None) -> CamPair:
     count = pair.facets if facets is None else facets
-    if pair.profile.follower.contact == "knife" or count == len(pair.outline):
+    if not count or pair.profile.follower.contact == "knife":
         return replace(pair, facets=count)  # a knife edge has none: its engines say so
-    from analytic.cams.base_circle import refuse_undercut  # loads scipy, for cams by contact alone
-
     try:
         refuse_undercut(pair.profile)
     except CrankcheckError as error:

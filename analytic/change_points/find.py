@@ -63,7 +63,7 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
     chunk = stretched(scene, steps, theta)
     for k, step in enumerate(steps):
         if isinstance(step, PeriodicStep):
-            period = max(period, step.period(passing) or math.tau)
+            period = max(period, step.period(passing, period) or math.tau)
             theta = _grid(start, period)
             chunk = stretched(scene, steps, theta, passing)
             continue

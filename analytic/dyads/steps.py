@@ -38,16 +38,18 @@ class PeriodicStep(ABC):
     def advance(self, chunk: Chunk) -> None: ...
 
     @abstractmethod
-    def period(self, passages: Mapping[str, Passage]) -> float | None:
-        """Return the driver angle after which the bodies come back [rad], a multiple of that of the
-        steps before; None where they end."""
+    def period(self, passages: Mapping[str, Passage], base: float) -> float | None:
+        """Return the driver angle after which the bodies come back [rad], a multiple of ``base``,
+        that of the steps before; None where they end."""
 
 
 def common_period(steps: Iterable[Step], passages: Mapping[str, Passage]) -> float:
     """Return the driver angle [rad] after which positions repeat, with the known change points."""
-    periods = [passage.period for passage in passages.values()]
-    own = [step.period(passages) for step in steps if isinstance(step, PeriodicStep)]
-    return max([*periods, *(one or math.tau for one in own)], default=math.tau)
+    period = max((passage.period for passage in passages.values()), default=math.tau)
+    for step in steps:
+        if isinstance(step, PeriodicStep):
+            period = max(period, step.period(passages, period) or math.tau)
+    return period
 
 
 class FollowedStep(PeriodicStep):

@@ -12,19 +12,14 @@ that in its outer pin; E and M the other forces on a body, with moments about th
 
 from collections.abc import Callable, Mapping
 
-import numpy as np
-
 from analytic.dyads.plane import EPS
 from analytic.forces.bounded import NOUGHT, Bounded, BoundedVec
 from analytic.forces.central_balance import balance_central
 from analytic.forces.free_body import Balance, PrismaticPair
-from analytic.higher_pairs.follower_step import lift_at
+from analytic.higher_pairs.follower_step import lift_at, lift_errors
 from analytic.structure.gear_groups import GearGroup
 from analytic.structure.groups import Bridge, Following, Group, Triad
-from models.array import Array
 from models.scene import GROUND
-from models.scene.cam_laws import CamLift
-from models.scene.pairs import CamPair
 
 
 def torque_of(on: Balance) -> Bounded:
@@ -159,7 +154,8 @@ def _following(on: Balance, part: Following) -> None:
     pair, own = part.pair, on.free[part.body]
     cam, carrier = on.free[pair.cam], on.free[pair.carrier]
     lift = lift_at(pair, cam.body, carrier.body)
-    ratio = Bounded(lift.first, None if own.body.error is None else _rounding(pair, lift))
+    certified = own.body.error is not None
+    ratio = Bounded(lift.first, lift_errors(pair, cam.body, carrier.body)[1] if certified else None)
     if pair.slider:
         line = on.pair(pair.slider)
         push = -line.along.dot(own.force)
@@ -175,12 +171,6 @@ def _following(on: Balance, part: Following) -> None:
     cam.moment = cam.moment - couple
     if pair.carrier != GROUND:
         carrier.moment = carrier.moment + couple
-
-
-def _rounding(pair: CamPair, lift: CamLift) -> Array:
-    """Return a bound of the first derivative of a lift beside the rounding of the cam's angle."""
-    law = pair.profile.law
-    return 64 * EPS * (np.abs(lift.first) + max(map(abs, law.extremes(2))) + law.stroke)
 
 
 _BALANCES: Mapping[str, Callable[[Balance, Group], None]] = {

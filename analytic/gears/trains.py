@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from analytic.structure.gear_groups import reduced
 from models.errors import CrankcheckError, few
 from models.scene import GROUND
 from models.scene.pairs import Gear
@@ -146,20 +147,3 @@ def _rows(gears: Iterable[Gear], bodies: Collection[str]) -> list[list[Fraction]
 
 def _rank(gears: Iterable[Gear], bodies: Collection[str]) -> int:
     return len(reduced(_rows(gears, bodies))[1])
-
-
-def reduced(rows: Sequence[Sequence[Fraction]]) -> tuple[list[list[Fraction]], list[int]]:
-    """Return the reduced echelon form of rows, without those of zeros, and its pivot columns."""
-    left, done, pivots = [list(row) for row in rows], list[list[Fraction]](), list[int]()
-    for column in range(len(left[0]) if left else 0):
-        at = next((n for n, row in enumerate(left) if row[column]), None)
-        if at is None:
-            continue
-        pivot = left.pop(at)
-        pivot = [x / pivot[column] for x in pivot]
-        for row in (*done, *left):
-            if factor := row[column]:
-                row[:] = [x - factor * y for x, y in zip(row, pivot, strict=True)]
-        done.append(pivot)
-        pivots.append(column)
-    return done, pivots

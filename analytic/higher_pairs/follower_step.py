@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from analytic.cams.base_circle import refuse_undercut
 from analytic.dyads.chunk import SINES, Chunk
 from analytic.dyads.parts import SlideError, Sliding
 from analytic.dyads.plane import EPS, AngleError, BodyKinematics, Real, Vec
 from analytic.dyads.riding import PlacedBodies, RidingLine, riding_point
 from analytic.structure.groups import Following
 from models.array import Array
+from models.errors import CrankcheckError, StructureError
 from models.scene.cam_laws import CamLift
 from models.scene.pairs import CamPair
 
@@ -34,8 +36,11 @@ class FollowerStep:
         self.key = f"cam {self.pair.name}"
         scene = placed.scene
         self.lowest = self.pair.lowest(scene.points_of, scene.sliders)
-        law = self.pair.profile.law
-        self.peaks = [max(map(abs, law.extremes(n))) for n in range(4)]
+        try:
+            if self.pair.profile.law.continuous > 0:  # else it has corners, as a relation
+                refuse_undercut(self.pair.profile)
+        except CrankcheckError as error:
+            raise StructureError(f"{scene.name}: cams.{self.pair.name}: {error}") from None
         self.riding = RidingLine.of(placed, self.pair.slider) if self.pair.slider else None
         self.pin = "" if self.riding else part.joint[1]
         self.local = (0.0, 0.0) if self.riding else placed.local(part.body, self.pin)
@@ -77,21 +82,10 @@ class FollowerStep:
     def _error(
         self, cam: BodyKinematics, carrier: BodyKinematics, lift: CamLift, place: Array
     ) -> SlideError:
-        """Return bounds of the coordinate and its rates: those of the law's angle by the largest
-        next derivative, jumps of the law beside it, and the rounding of the law."""
+        """Return bounds of the coordinate and its rates."""
         assert cam.error is not None
         assert carrier.error is not None
-        one, other = angle_of(cam), angle_of(carrier)
-        off = cam.error.theta + carrier.error.theta
-        off = off + 3 * EPS * (np.abs(one) + np.abs(other) + abs(self.pair.start_rad) + 7.0)
-        jumps = self._jumps(self.pair.law_angle(one, other), off)
-        peaks = [*self.peaks[1:], 0.0]
-        law = self.pair.profile.law
-        narrow = min(np.diff([*law.knots_rad, 2.0 * np.pi]))
-        errors = [
-            peaks[n] * off + jumps[n] + 64 * EPS * self.peaks[0] / (0.5 * narrow) ** n
-            for n in range(3)
-        ]
+        errors = lift_errors(self.pair, cam, carrier)
         omega, alpha = np.abs(cam.omega - carrier.omega), np.abs(cam.alpha - carrier.alpha)
         rate = cam.error.omega + carrier.error.omega + 2 * EPS * omega
         gain = cam.error.alpha + carrier.error.alpha + 2 * EPS * alpha
@@ -103,12 +97,24 @@ class FollowerStep:
             + errors[1] * alpha + first * gain + 4 * EPS * second * omega**2,
         )  # fmt: skip
 
-    def _jumps(self, phi: Array, off: Array) -> list[Array]:
-        """Return the jump of lift, and its two derivatives, within ``off`` of each angle (T,)."""
-        found = [np.zeros_like(phi) for _ in range(3)]
-        for jump in self.pair.profile.law.jumps:
-            away = np.remainder(phi - jump.angle_rad + np.pi, 2.0 * np.pi) - np.pi
-            near = np.abs(away) <= off
-            for n, size in enumerate((jump.lift, jump.velocity, jump.acceleration)):
-                found[n] = found[n] + np.where(near, abs(size), 0.0)
-        return found
+
+def lift_errors(pair: CamPair, cam: BodyKinematics, carrier: BodyKinematics) -> list[Real]:
+    """Return bounds of the lift and its first two derivatives: those of the law's angle by the
+    largest next derivative, jumps of the law beside it, and the rounding of the law."""
+    assert cam.error is not None
+    assert carrier.error is not None
+    law, one, other = pair.profile.law, angle_of(cam), angle_of(carrier)
+    off = cam.error.theta + carrier.error.theta
+    off = off + 3 * EPS * (np.abs(one) + np.abs(other) + abs(pair.start_rad) + 7.0)
+    peaks = [max(map(abs, law.extremes(n))) for n in range(4)]
+    narrow = 0.5 * min(np.diff([*law.knots_rad, 2.0 * np.pi]))
+    away = [np.zeros_like(off) for _ in range(3)]
+    for jump in law.jumps:
+        phi = pair.law_angle(one, other) - jump.angle_rad
+        near = np.abs(np.remainder(phi + np.pi, 2.0 * np.pi) - np.pi) <= off
+        for n, size in enumerate((jump.lift, jump.velocity, jump.acceleration)):
+            away[n] = away[n] + np.where(near, abs(size), 0.0)
+    return [
+        peaks[n + 1] * off + away[n] + 64 * EPS * peaks[0] / narrow**n
+        for n in range(3)
+    ]  # fmt: skip

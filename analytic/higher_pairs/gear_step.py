@@ -96,11 +96,10 @@ class GearStep(PeriodicStep):
         law = self.scene.driver.law
         return float(law.at(np.zeros(1))[0][0]) / driver_scale(self.scene)
 
-    def period(self, passages: Mapping[str, Passage]) -> float | None:
+    def period(self, passages: Mapping[str, Passage], base: float) -> float | None:
         """Return the driver angle after which its links stand as at first [rad]; that of the known
         bodies where nothing hangs on it. Raises CrankcheckError for more than `MOST_TURNS`."""
         own = {step.key: passages[step.key] for step in self.before if step.key in passages}
-        base = common_period(self.before, own)
         if not self.leads or self.scene.driver.slider is not None:
             return base
         ends: Array = np.array([self._start, self._start + base])

@@ -16,7 +16,6 @@ Source: R. Willis' formula, e.g. Norton, Design of Machinery, section 9.9.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -68,16 +67,37 @@ class GearGroup:
 
 
 def gear_groups(gears: Sequence[Gear], hanging: Hanging) -> Iterator[GearGroup]:
-    """Yield the trains that can be placed next, those of the fewest gears first."""
-    open_gears = [gear for gear in gears if _unknown(gear, hanging)]
-    for size in range(1, len(open_gears) + 1):
-        for chosen in itertools.combinations(open_gears, size):
-            bodies = list(dict.fromkeys(b for gear in chosen for b in _unknown(gear, hanging)))
-            if len(bodies) != size or (placing := _placing(bodies, hanging)) is None:
-                continue
-            inverse = _inverse([[gear.relation.get(b, 0) for b in placing] for gear in chosen])
-            if inverse is not None:
-                yield GearGroup(tuple(placing), tuple(placing.values()), chosen, inverse)
+    """Yield the groups of gears that can be placed next.
+
+    The relations of all open gears are reduced to the angles that known ones determine; those that
+    share gears are placed together.
+    """
+    left = [gear for gear in gears if _unknown(gear, hanging)]
+    bodies = list(dict.fromkeys(body for gear in left for body in _unknown(gear, hanging)))
+    rows = [
+        [Fraction(gear.relation.get(body, 0)) for body in bodies]
+        + [Fraction(int(one is gear)) for one in left]
+        for gear in left
+    ]
+    shares: dict[str, dict[str, Fraction]] = {}
+    for row, pivot in zip(*reduced(rows), strict=True):
+        if pivot < len(bodies) and sum(map(bool, row[: len(bodies)])) == 1:
+            own = zip(left, row[len(bodies) :], strict=True)
+            shares[bodies[pivot]] = {gear.name: share for gear, share in own if share}
+    while shares:
+        body, used = next(iter(shares.items()))
+        group, names = {body}, set(used)
+        while more := {b for b in shares.keys() - group if names & shares[b].keys()}:
+            group |= more
+            names |= {name for b in more for name in shares[b]}
+        own_shares = {b: shares.pop(b) for b in [*shares] if b in group}
+        chosen = tuple(gear for gear in left if gear.name in names)
+        placing = _placing(list(own_shares), hanging)
+        if len(chosen) == len(group) and placing is not None:
+            inverse = tuple(
+                tuple(own_shares[b].get(gear.name, Fraction(0)) for gear in chosen) for b in placing
+            )
+            yield GearGroup(tuple(placing), tuple(placing.values()), chosen, inverse)
 
 
 def _unknown(gear: Gear, hanging: Mapping[str, object]) -> list[str]:
@@ -100,19 +120,18 @@ def _placing(bodies: Sequence[str], hanging: Hanging) -> dict[str, str] | None:
     return placing
 
 
-def _inverse(rows: Sequence[Sequence[int]]) -> Rows | None:
-    """Return the inverse of a square matrix, exact; None where it is singular."""
-    size = len(rows)
-    left = [[Fraction(one) for one in row] for row in rows]
-    for k, row in enumerate(left):
-        row += [Fraction(int(k == j)) for j in range(size)]
-    for k in range(size):
-        pivot = next((j for j in range(k, size) if left[j][k]), None)
-        if pivot is None:
-            return None
-        left[k], left[pivot] = left[pivot], left[k]
-        left[k] = [one / left[k][k] for one in left[k]]
-        for j in range(size):
-            if j != k and left[j][k]:
-                left[j] = [a - left[j][k] * b for a, b in zip(left[j], left[k], strict=True)]
-    return tuple(tuple(row[size:]) for row in left)
+def reduced(rows: Sequence[Sequence[Fraction]]) -> tuple[list[list[Fraction]], list[int]]:
+    """Return the reduced echelon form of rows, without those of zeros, and its pivot columns."""
+    left, done, pivots = [list(row) for row in rows], list[list[Fraction]](), list[int]()
+    for column in range(len(left[0]) if left else 0):
+        at = next((n for n, row in enumerate(left) if row[column]), None)
+        if at is None:
+            continue
+        pivot = left.pop(at)
+        pivot = [x / pivot[column] for x in pivot]
+        for row in (*done, *left):
+            if factor := row[column]:
+                row[:] = [x - factor * y for x, y in zip(row, pivot, strict=True)]
+        done.append(pivot)
+        pivots.append(column)
+    return done, pivots

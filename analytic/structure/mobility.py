@@ -108,6 +108,11 @@ def analyse(scene: Scene) -> Structure:
         higher = [*scene.gears.values()], [*scene.cams.values()]
         order, left = decompose(bodies, frozenset(known), Pairs(pins, prismatics), *higher)
     else:
+        if scene.gears or scene.cams:
+            raise StructureError(
+                f"{scene.name}: {scene.driver.joint} drives two moving bodies, which does not go "
+                "with gears and cams here; drive a body against the ground"
+            )
         units = compound.units(bodies)
         order, left = decompose(units, frozenset({GROUND}), compound.pairs(pins, prismatics))
     count = len(scene.gears) + len(scene.cams)
@@ -186,11 +191,7 @@ def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | No
             f"{scene.name}: {what} takes a driver that is a link pinned to the ground, and this "
             f"scene's is {scene.driver.joint}"
         )
-    if higher := [*scene.gears, *scene.cams]:
-        raise CrankcheckError(
-            f"{scene.name}: {what} takes class II groups alone, and this scene has gears or cams "
-            f"({', '.join(higher)})"
-        )
+    refuse_higher_pairs(scene, what)
     triads = ", ".join(triad.central for triad in structure.triads) if structure else ""
     if triads:
         raise CrankcheckError(
@@ -205,6 +206,14 @@ def refuse_elastic(scene: Scene, what: str) -> None:
         raise CrankcheckError(
             f"{scene.name}: {next(iter(scene.elastic))} is elastic; {what} are those of rigid "
             "links: leave [elastic.LINK] out"
+        )
+
+
+def refuse_higher_pairs(scene: Scene, what: str) -> None:
+    """Refuse gears and cams, as ``what`` is worked out without them. Raises CrankcheckError."""
+    if higher := [*scene.gears, *scene.cams]:
+        raise CrankcheckError(
+            f"{scene.name}: {what} is not worked out with gears or cams ({', '.join(higher)})"
         )
 
 

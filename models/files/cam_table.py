@@ -82,6 +82,10 @@ class CamTable(schema.Table):
             raise ValueError("name what follows: slider = ..., or follower = ... and tip = ...")
         if (self.tip is None) != (self.follower is None):
             raise ValueError("tip is the point of a follower at its cam: give both, or a slider")
+        if self.contact != "flat" and self.face_m:
+            raise ValueError(f"face_m: a {self.contact} has no face; leave it out")
+        if self.left and self.slider is not None:
+            raise ValueError("left: a follower that slides has no side; leave it out")
         if self.facets != 0 and self.facets < LEAST_FACETS:
             raise ValueError(
                 f"facets: found {self.facets}; give {LEAST_FACETS} or more for a cam by contact, "

@@ -142,7 +142,8 @@ def mirrored(scene: Scene, sides: Iterable[str]) -> Scene:
         if isinstance(follower := profile.follower, TranslatingFollower):
             flipped = replace(follower, offset_m=-follower.offset_m)
             profile = replace(profile, follower=flipped, sense=-profile.sense)
-        return replace(old, profile=profile, side=-old.side, start_rad=-old.start_rad)
+        start = -old.start_rad
+        return replace(old, profile=profile, side=-old.side, start_rad=start, outline=())
 
     flipped = {pin: -scene.branch.get(pin, 1) for pin in sides}
     return replace(
@@ -232,7 +233,8 @@ def scaled(scene: Scene, factor: float) -> Scene:
         lengths = {k: factor * v for k, v in vars(follower).items() if k.endswith("_m")}
         law = profile.law if not old.slider else profile.law.scaled(factor)
         grown = replace(follower, **lengths)
-        return replace(old, profile=Cam(law, profile.base_m * factor, grown, profile.sense))
+        larger = Cam(law, profile.base_m * factor, grown, profile.sense)
+        return replace(old, profile=larger, outline=())
 
     grown = {name: factor * by for name, by in scene.start.displacements_m.items()}
     quick = {name: factor * speed for name, speed in scene.start.speeds_m_s.items()}

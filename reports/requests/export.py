@@ -12,6 +12,7 @@ from typing import Annotated
 from rich.console import Console
 from rich.text import Text
 
+from analytic.cams.outline import outlined
 from analytic.structure import groups, mobility
 from models.errors import CrankcheckError, StructureError, harmless
 from models.files.reading import KINEMATICS, find_scene, kinds, load_scene, shipped
@@ -47,7 +48,12 @@ class ExportRequest:
         """
         if self.output is not None:
             check_file(self.output, "-o", (".xml",), inputs=[find_scene(self.scene)])
-        own = under_control(load_scene(self.scene))
+        own = under_control(outlined(load_scene(self.scene)))
+        if any(not pair.facets for pair in own.cams.values()):
+            raise CrankcheckError(
+                f"{own.name}: a cam as a relation is set anew at each step, by a program; a file "
+                "holds it for one angle alone: give the cam's table facets, for a cam by contact"
+            )
         way = way_of(own)
         scene, start = way.opened(own)
         # Of segments the step is one that holds their fastest vibration.
@@ -78,7 +84,7 @@ class ForceRecipeRequest:
                 f"--steps-per-turn: found {self.steps_per_turn:g}; the program keeps a line for "
                 f"each step, so give {MOST_STEPS} at most"
             )
-        scene = load_scene(self.scene)
+        scene = outlined(load_scene(self.scene))
         settings = resolved(profile_of(engine(self.engine), self.profile), None)
         period = scene.driver.law.period_s
         check_steps(scene, period, period / self.steps_per_turn, 1, 1)
@@ -108,7 +114,7 @@ class ViewRequest:
         read = [find_scene(self.scene)]
         if output is not None:
             check_file(output, "-o", PICTURES, inputs=read)
-        scene = load_scene(self.scene)
+        scene = outlined(load_scene(self.scene))
         if output is None and has_screen() and not self.forces:
             viewer()(*way_of(scene).opened(scene))
             return 0

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, overload
 
 from rich.console import Console
 
+from analytic.cams.outline import outlined
 from analytic.free.free_motion import loosened
 from models.errors import CrankcheckError
 from models.files.inputs import names_in
@@ -323,7 +324,7 @@ class JudgeRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 within, 1 out. Raises CrankcheckError for a log that
         can not be read and for a faulty request, before anything is written."""
-        scene = load_scene(self.scene)
+        scene = outlined(load_scene(self.scene))
         scene = _released(scene, free=self.free)
         outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
         asked = _checked(self, scene, outputs)

@@ -8,6 +8,7 @@ from typing import Annotated
 from rich.console import Console
 
 from analytic.lectures.regulation.equilibria import equilibria
+from analytic.structure.mobility import refuse_higher_pairs
 from models.files.reading import load_scene
 from reports.lectures.machine.rotatability import show_rows
 from reports.output.console import say, say_each, say_whole
@@ -26,6 +27,8 @@ class EquilibriaRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Show the positions of rest. Raises CrankcheckError as `equilibria`."""
         scene = load_scene(self.scene)
+        if scene.cams:  # which rest over whole dwells
+            refuse_higher_pairs(scene, "a position of rest")
         rests = equilibria(scene)
         rows = [
             {

@@ -53,7 +53,9 @@ class GearsRequest:
         Sequence[str],
         option("Profile shift of a body's teeth, in modules; repeatable.", "BODY=X"),
     ] = ()
-    planets: Annotated[int | None, "Check that so many equal planets can be assembled."] = None
+    planets: Annotated[
+        int | None, option("Check that so many equal planets can be assembled.", min=1)
+    ] = None
     output: Annotated[
         Path | None, output_option("Write all as .json, or members as .csv, .parquet or .xlsx.")
     ] = None

@@ -25,7 +25,7 @@ from analytic.lectures.circuits.rotatability import (
     rotations,
 )
 from analytic.mechanism.fourbar import grashof_of
-from analytic.structure.mobility import analyse
+from analytic.structure.mobility import analyse, refuse_higher_pairs
 from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files.reading import load_scene
 from models.scene import Scene
@@ -54,6 +54,7 @@ class RotatabilityRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Show the answer; return the exit code. Raises CrankcheckError for a faulty request."""
         scene = load_scene(self.scene)
+        refuse_higher_pairs(scene, "rotatability")
         show = _show
         try:
             circuits = circuits_of(scene)
