@@ -4,7 +4,6 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -16,16 +15,13 @@ from analytic.gears.torques import TrainTorques, torques
 from analytic.gears.trains import Train
 from analytic.gears.willis import elementary_trains
 from models.errors import CrankcheckError, few, shown
-from models.files.reading import find_scene, load_scene
+from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.characteristics import Constant
 from reports.lectures.machine.rotatability import show_rows
 from reports.output.console import say, say_each, say_whole
-from reports.output.formats import ENDINGS, write_frame
-from reports.output.write import check_file, write
-from reports.requests.options import SceneName, option, output_option
+from reports.requests.options import SceneName, option
 
-NUMBERS = ".json"
 Row = dict[str, object]
 COLUMNS = {
     "members": "body speed_rad_s ratio torque_n_m power_w",
@@ -56,21 +52,12 @@ class GearsRequest:
     planets: Annotated[
         int | None, option("Check that so many equal planets can be assembled.", min=1)
     ] = None
-    output: Annotated[
-        Path | None, output_option("Write all as .json, or members as .csv, .parquet or .xlsx.")
-    ] = None
     json: Annotated[bool, "As JSON, not as tables."] = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or write the train. Raises CrankcheckError for a faulty request or train."""
-        if self.output is not None:
-            inputs = [find_scene(self.scene)]
-            check_file(self.output, "-o", (*ENDINGS, NUMBERS), inputs=inputs)
+        """Show the train. Raises CrankcheckError for a faulty request or train."""
         scene = load_scene(self.scene)
         document = _document(scene, self)
-        if self.output is not None:
-            _write(self.output, scene, document)
-            say_whole(console, f"{self.output}: the gear train of {scene.name}")
         if self.json:
             say_whole(console, json.dumps(document, indent=1))
             return 0
@@ -242,14 +229,3 @@ def _shared(count: int | None) -> list[str]:
     """Say that the scene's one planet stands for several."""
     several = f"{count} planets share the loads of each mesh that is listed for one"
     return [several] * (count is not None and count > 1)
-
-
-def _write(path: Path, scene: Scene, document: Mapping[str, object]) -> None:
-    if path.suffix.lower() == NUMBERS:
-        write(path, json.dumps(document, indent=1))
-        return
-    import pandas as pd
-
-    members = document["members"]
-    frame = pd.DataFrame(members if isinstance(members, list) else [])
-    write_frame(path, frame, "members", {"scene": scene.name, "source": scene.source})
