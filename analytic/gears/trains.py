@@ -5,8 +5,11 @@ Each pair relates the speeds of its gears and of their carrier (`models.scene.pa
     z0 omega0 + s z1 omega1 - (z0 + s z1) omega_c = 0
 
 With the ground at rest the mobility is the number of moving bodies less the rank of these rows; the
-null space has the ratios. Source: Willis, Principles of Mechanism (1841), as rows of one
-matrix; Mueller, Epicyclic Drive Trains (1982).
+null space has the ratios. An elementary train is the gears that mesh with each other on one
+carrier: seen from it, gear a over gear b turns by the product of teeth along the way between them,
+each external mesh reversing it, (omega_a - omega_c)/(omega_b - omega_c) = prod (-+ z/z'). Sources:
+Willis, Principles of Mechanism (1841), as rows of one matrix; Mueller, Epicyclic Drive Trains
+(1982); Shigley, Mechanical Engineering Design, 13-13 (train value e).
 """
 
 from __future__ import annotations
@@ -147,3 +150,37 @@ def _rows(gears: Iterable[Gear], bodies: Collection[str]) -> list[list[Fraction]
 
 def _rank(gears: Iterable[Gear], bodies: Collection[str]) -> int:
     return len(reduced(_rows(gears, bodies))[1])
+
+
+@dataclass(frozen=True)
+class ElementaryTrain:
+    """Gears that mesh on one ``carrier``; ``values``, by gear, are their speeds against it over
+    that of the first, and ``gears`` the names of the pairs."""
+
+    carrier: str
+    values: Mapping[str, Fraction]
+    gears: tuple[str, ...]
+
+    def value(self, body: str, other: str) -> Fraction:
+        """Return the basic ratio of two of its gears: i above, the carrier at rest."""
+        return self.values[body] / self.values[other]
+
+
+def elementary_trains(gears: Iterable[Gear]) -> list[ElementaryTrain]:
+    """Return the elementary trains of gear pairs, in the order of their first pairs."""
+    left, found = list(gears), list[ElementaryTrain]()
+    while left:
+        first = left[0]
+        values, used = {first.bodies[0]: Fraction(1)}, list[Gear]()
+        while meshing := next((g for g in left if g.carrier == first.carrier
+                               and not values.keys().isdisjoint(g.bodies)), None):  # fmt: skip
+            left.remove(meshing)
+            used.append(meshing)
+            ratio = Fraction(-meshing.teeth[0], meshing.second)
+            a, b = meshing.bodies
+            if a in values:
+                values.setdefault(b, values[a] * ratio)
+            else:
+                values[a] = values[b] / ratio
+        found.append(ElementaryTrain(first.carrier, values, tuple(g.name for g in used)))
+    return found

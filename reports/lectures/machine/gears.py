@@ -12,8 +12,7 @@ from rich.console import Console
 from analytic.gears.assembly import PlanetStage, check_planets, planet_stages
 from analytic.gears.involute import TeethPair
 from analytic.gears.torques import TrainTorques, torques
-from analytic.gears.trains import Train
-from analytic.gears.willis import elementary_trains
+from analytic.gears.trains import Train, elementary_trains
 from models.errors import CrankcheckError, few, shown
 from models.files.reading import load_scene
 from models.scene import Scene

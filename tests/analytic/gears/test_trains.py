@@ -5,9 +5,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from analytic.gears import willis
-from analytic.gears.trains import Train
+from analytic.gears.trains import Train, elementary_trains
 from models.errors import CrankcheckError
+from tests.analytic.gears import willis
 from tests.analytic.gears.trains import BOOK, KNOWN, RAVIGNEAUX, SIMPSON, Known, chain, mesh
 
 
@@ -37,11 +37,11 @@ def test_ratio_is_the_published_one_by_willis(known: Known) -> None:
 
 
 def test_basic_ratios_are_those_with_the_carrier_at_rest() -> None:
-    front, rear = willis.elementary_trains(SIMPSON)
+    front, rear = elementary_trains(SIMPSON)
     assert front.carrier == "out"
     assert front.value("front", "sun") == Fraction(-30, 66)
     assert rear.value("out", "planet2") == Fraction(18, 66)
-    (whole,) = willis.elementary_trains(RAVIGNEAUX)
+    (whole,) = elementary_trains(RAVIGNEAUX)
     assert whole.value("ring", "small") == Fraction(30, 72)
     assert whole.value("ring", "large") == Fraction(-36, 72)
 
