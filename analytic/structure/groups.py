@@ -185,7 +185,7 @@ def decompose(
     outer = {body: pairs.outer(body, placed) for body in bodies if body not in placed}
     order: list[Part] = []
     while (
-        part := next(gear_groups(gears, pairs.hanging(outer)), None)
+        part := (next(gear_groups(gears, pairs.hanging(outer)), None) if gears else None)
         or next(_followers(cams, outer, placed), None)
         or next(_dyads(outer, placed, pairs), None)
         or next(_triads(outer, placed, pairs), None)
