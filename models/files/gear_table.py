@@ -108,6 +108,6 @@ def faults_of_meshes(scene: Scene) -> Iterator[str]:
         if abs(distance - fitting) > FITS * fitting:
             yield (
                 f"{key}.module_m: {gear.module_m:g} with {gear.teeth[0]} and {gear.teeth[1]} teeth "
-                f"asks for a centre distance of {fitting:.9g} m, found {distance:.9g} m; use "
+                f"needs a centre distance of {fitting:.9g} m, found {distance:.9g} m; use "
                 f"{2.0 * distance / count:.9g}, leave it out, or move the centres"
             )

@@ -21,15 +21,7 @@ NEEDED = tuple(
     for each in fields(Engine)
     if each.default is MISSING and each.default_factory is MISSING
 )
-SAYS = (
-    "reports_accelerations",
-    "applies_loads",
-    "applies_constant_friction",
-    "applies_springs",
-    "applies_gears",
-    "applies_cams",
-    "applies_beams",
-)
+SAYS = tuple(each.name for each in fields(Engine) if isinstance(each.default, bool))
 """Attributes that are true or false."""
 CALLED = ("version", "check", "open", "holds", "placing", "in_seconds", "unreported")
 

@@ -12,7 +12,8 @@ from reports.quantities.quantity import BodyKind
 from sim.engine import Placing
 
 LEAST_SAMPLES = 8
-BOTH = 1.0 + 1e-6
+EITHER_SIDE = 1.0 + 1e-6
+"""Factor on the largest jump of a cam's law up to which a bound is that of the jump."""
 SHARE = 0.1
 """Largest uncertainty of the reference, as a share of its limit."""
 
@@ -79,8 +80,9 @@ class ReferenceCertain:
         if evidence.errors is None:
             return None
         worst, name, limit = 0.0, "", 0.0
+        jump = EITHER_SIDE * evidence.errors.of_scene.law_jumps[0]
         for key, body, bound in _bounds(evidence.errors):
-            if key not in evidence.limits or bound <= BOTH * evidence.errors.of_scene.law_jumps[0]:
+            if key not in evidence.limits or (key in JUMPING and bound <= jump):
                 continue  # in a jump of a cam's law either side is right
             share = bound / evidence.limits[key].number
             share = math.inf if math.isnan(share) else share
@@ -108,6 +110,7 @@ LEAST = 5e-5
 """A nineteenth of the least observed multiple."""
 PLACES, RATES = named("place"), named("derived")
 FORCES = tuple(name for name in named("force") if name != "moment")
+JUMPING = ("acceleration", *named("force"))
 """A block that is pinned at its point bears no moment, in an engine as in the reference."""
 WHOLE = ("total", "geometric")
 """Errors of the run, but for its start and change points, where an engine may have hardly moved."""

@@ -116,7 +116,7 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
         "gear that is not pinned": ("planet]\npoints = { P", "planet]\npoints = { R", "gears.inner: planet shares no point with its carrier arm; it turns on its carrier about one point"),
         "gear fixed to its carrier": ("Q = [0.04, 0.0]", "O = [-0.06, 0.0]", "gears.inner: planet shares P and O with its carrier arm"),
         "small ring": ("[40, 100]", "[40, 40]", "gears.outer: teeth are 40 and 40; the second of an internal pair is the ring, which has more teeth"),
-        "module that does not fit": ("module_m = 0.002", "module_m = 0.0025", "gears.inner.module_m: 0.0025 with 20 and 40 teeth asks for a centre distance of 0.075 m, found 0.06 m; use 0.002,"),
+        "module that does not fit": ("module_m = 0.002", "module_m = 0.0025", "gears.inner.module_m: 0.0025 with 20 and 40 teeth needs a centre distance of 0.075 m, found 0.06 m; use 0.002,"),
         "gains power": ("efficiency = 0.98", "efficiency = 1.02", "gears.inner.efficiency: found 1.02; use a number of at most 1"),
         "steep": ("= 25.0", "= 60.0", "gears.outer.pressure_angle_deg: found 60.0; use a number of at most 45"),
         "unknown key": ("module_m", "module_mm", "gears.inner.module_mm: unknown key; did you mean module_m"),
