@@ -14,7 +14,7 @@ self-locking.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 
@@ -89,15 +89,8 @@ class TrainTorques:
         }
 
 
-def torques(
-    train: Train,
-    inputs: Mapping[str, float],
-    loads: Mapping[str, float],
-    *,
-    balancing: Sequence[str] | None = None,
-    lossless: bool = False,
-) -> TrainTorques:
-    """Find the torques on all members in steady motion.
+def torques(train: Train, inputs: Mapping[str, float], loads: Mapping[str, float]) -> TrainTorques:
+    """Find the torques on all members in steady motion; those of the inputs close the balance.
 
     Parameters
     ----------
@@ -105,31 +98,25 @@ def torques(
         Speeds of independent bodies [rad/s], as many as the mobility.
     loads : mapping
         Known torques from outside [N m], counter-clockwise positive; others are 0.
-    balancing : sequence of str, optional
-        Bodies whose torque closes the balance, as many as the mobility; the inputs by default.
-    lossless : bool
-        Leave the losses of the teeth out.
 
     Raises
     ------
     CrankcheckError
-        Inputs or balancing bodies that depend on each other or leave some open (`Train.influence`);
-        a load on a body that closes the balance, or that the train lacks; a self-locking train.
+        Inputs that depend on each other or leave some open (`Train.influence`); a load on an input,
+        or on a body that the train lacks; a self-locking train.
 
     Notes
     -----
     Equal planets share a load evenly: the least sum of squares among all loads in balance.
     """
-    closing = tuple(inputs if balancing is None else balancing)
-    speeds = train.speeds(inputs)
-    train.influence(closing)
+    closing, speeds = tuple(inputs), train.speeds(inputs)
     for body in loads:
         if body not in train.bodies or body in closing:
             open_bodies = [one for one in train.bodies if one not in closing]
             why = "closes the balance" if body in closing else "is no moving body of the train"
             raise CrankcheckError(f"torque on {body}: it {why}; use {', '.join(open_bodies)}")
     seen: set[tuple[int, ...]] = set()
-    for drives in _choices(train, lossless=lossless):
+    for drives in _choices(train):
         way = drives
         while way not in seen:  # the driving gears of the last loads are the next choice
             seen.add(way)
@@ -145,9 +132,9 @@ def torques(
     )
 
 
-def _choices(train: Train, *, lossless: bool) -> Iterator[tuple[int, ...]]:
+def _choices(train: Train) -> Iterator[tuple[int, ...]]:
     """Yield who drives by pair: 1 the first gear, -1 the second, 0 without losses."""
-    loses = [gear.efficiency < 1.0 and not lossless for gear in train.gears]
+    loses = [gear.efficiency < 1.0 for gear in train.gears]
     if not any(loses):
         yield (0,) * len(loses)
         return

@@ -97,14 +97,6 @@ class Train:
         }
         return {body: (own | unit)[body] for body in (GROUND, *self.bodies)}
 
-    def ratio(self, body: str, source: str, held: Sequence[str] = ()) -> Fraction:
-        """Return the speed of a body over that of the input ``source``, other inputs ``held`` at
-        rest. Raises CrankcheckError as `influence`."""
-        coefficients = self.influence((source, *held))
-        if body not in coefficients:
-            raise CrankcheckError(f"{body}: no body of the train; use {self._listed()}")
-        return coefficients[body][0]
-
     def speeds(self, inputs: Mapping[str, float]) -> dict[str, float]:
         """Return the speeds of all bodies, the ground's 0 first [rad/s], for those of the inputs.
         Raises CrankcheckError as `influence`."""

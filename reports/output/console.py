@@ -137,6 +137,27 @@ def grid(
     return shown
 
 
+def show_rows(
+    console: Console, rows: Sequence[Mapping[str, object]], columns: Sequence[str]
+) -> None:
+    """Print a table of rows, each a mapping by column; a number below 1e-6 as 0."""
+    heads = [column.replace("_", " ") for column in columns]
+    cells = ([_cell(row.get(column)) for column in columns] for row in rows)
+    console.print(grid(heads, cells), highlight=False)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else ""
+    if isinstance(value, list):
+        return ", ".join(map(str, dict.fromkeys(value)))
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {_cell(each)}" for name, each in value.items())
+    if isinstance(value, float):
+        return f"{0.0 if abs(value) < 1e-6 else value:.6g}"
+    return "" if value is None else str(value)
+
+
 def show_failed(
     console: Console, head: str, findings: Iterable[tuple[str, str]], remedy: str = ""
 ) -> None:

@@ -18,26 +18,19 @@ LOST = slice(WHEN, WHEN + 3)
 """Samples at which contact is lost."""
 
 
-def _gear(change: Callable[[Gear, float], Gear]) -> fault.Plant:
-    """Give the engine another first pair of gears, or the same for a size of 0."""
+def _first(table: str, change: Callable[[Any, float], Any]) -> fault.Plant:
+    """Give the engine another first entry of a table, or the same for a size of 0."""
 
-    def changed(scene: Scene, size: float) -> Scene:
-        name, gear = next(iter(scene.gears.items()))
-        return replace(
-            scene, gears={**scene.gears, name: change(gear, size)} if size else scene.gears
-        )
+    def another(scene: Scene, size: float) -> Scene:
+        pairs = getattr(scene, table)
+        name, pair = next(iter(pairs.items()))
+        changed: dict[str, Any] = {table: {**pairs, name: change(pair, size) if size else pair}}
+        return replace(scene, **changed)
 
-    return fault.in_scene(changed)
+    return fault.in_scene(another)
 
 
-def _cam(change: Callable[[CamPair, float], CamPair]) -> fault.Plant:
-    """Give the engine another cam, or the same for a size of 0."""
-
-    def changed(scene: Scene, size: float) -> Scene:
-        ((name, pair),) = scene.cams.items()
-        return replace(scene, cams={name: change(pair, size) if size else pair})
-
-    return fault.in_scene(changed)
+_gear, _cam = partial(_first, "gears"), partial(_first, "cams")
 
 
 def _profile(pair: CamPair, **changes: Any) -> CamPair:

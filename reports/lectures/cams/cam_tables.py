@@ -11,7 +11,7 @@ from analytic.cams.cam_design import ExaminedCam
 from models.scene.cam_laws import KINDS, CamLaw, peak_factors
 from models.scene.cams import Cam
 from reports.lectures.cams.profile_files import unit_of
-from reports.output.console import grid, say
+from reports.output.console import say, show_rows
 
 RATES = ("velocity", "acceleration", "jerk")
 Rows = list[dict[str, object]]
@@ -118,17 +118,9 @@ def show_cam(console: Console, found: ExaminedCam, faults: list[str]) -> None:
 
 
 def _show(console: Console, rows: Rows, title: str) -> None:
-    heads = list(dict.fromkeys(key for row in rows for key in row))
-    cells = [[_cell(row.get(head, "")) for head in heads] for row in rows]
-    texts = ("motion", "jumps")
-    labels = [head if head in texts else f"{head}:" for head in heads]
     say(console, f"\n{title}")
     if rows:
-        console.print(grid(labels, cells, wraps=True))
-
-
-def _cell(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+        show_rows(console, rows, list(dict.fromkeys(key for row in rows for key in row)))
 
 
 def document(name: str, found: ExaminedCam, faults: list[str]) -> Mapping[str, object]:

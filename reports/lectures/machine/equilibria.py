@@ -10,8 +10,7 @@ from rich.console import Console
 from analytic.lectures.regulation.equilibria import equilibria
 from analytic.structure.mobility import refuse_higher_pairs
 from models.files.reading import load_scene
-from reports.lectures.machine.rotatability import show_rows
-from reports.output.console import say, say_each, say_whole
+from reports.output.console import say, say_each, say_whole, show_rows
 from reports.requests.options import SceneName
 
 COLUMNS = "circuit scene rests links_deg potential_j frequency_hz"

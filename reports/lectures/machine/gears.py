@@ -17,8 +17,7 @@ from models.errors import CrankcheckError, few, shown
 from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.characteristics import Constant
-from reports.lectures.machine.rotatability import show_rows
-from reports.output.console import say, say_each, say_whole
+from reports.output.console import say, say_each, say_whole, show_rows
 from reports.requests.options import SceneName, option
 
 Row = dict[str, object]

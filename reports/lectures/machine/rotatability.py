@@ -30,7 +30,7 @@ from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files.reading import load_scene
 from models.scene import Scene
 from models.scene.driver import driver_unit
-from reports.output.console import grid, say, say_whole
+from reports.output.console import say, say_whole, show_rows
 from reports.requests.options import SceneName, option
 
 Row = Mapping[str, object]
@@ -238,21 +238,3 @@ def _show(console: Console, document: Mapping[str, Any]) -> None:
         found = document["defect"]
         told = "led through by the driver" if found == "none" else f"a {found} defect"
         say(console, f"positions: {told}")
-
-
-def show_rows(console: Console, rows: Sequence[Row], columns: Sequence[str]) -> None:
-    heads = [column.replace("_", " ") for column in columns]
-    cells = ([_cell(row.get(column)) for column in columns] for row in rows)
-    console.print(grid(heads, cells), highlight=False)
-
-
-def _cell(value: object) -> str:
-    if isinstance(value, bool):
-        return "yes" if value else ""
-    if isinstance(value, list):
-        return ", ".join(map(str, dict.fromkeys(value)))
-    if isinstance(value, Mapping):
-        return ", ".join(f"{name} {_cell(each)}" for name, each in value.items())
-    if isinstance(value, float):
-        return f"{0.0 if abs(value) < 1e-6 else value:.6g}"
-    return "" if value is None else str(value)

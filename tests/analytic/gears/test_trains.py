@@ -15,7 +15,7 @@ from tests.analytic.gears.trains import BOOK, KNOWN, RAVIGNEAUX, SIMPSON, Known,
 def test_ratio_is_the_published_one_by_the_null_space(known: Known) -> None:
     train = Train(known.gears)
     assert train.mobility == 1 + len(known.held)
-    assert train.ratio(known.body, known.source, known.held) == known.ratio
+    assert train.influence((known.source, *known.held))[known.body][0] == known.ratio
     # A second null space, of numpy's singular values.
     inputs = {known.source: 1.0, **dict.fromkeys(known.held, 0.0)}
     speeds = train.speeds(inputs)
