@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -60,18 +60,29 @@ def samples(found: ExaminedCam) -> Array:
 def draw_diagrams(name: str, note: str, found: ExaminedCam) -> Figure:
     """Draw lift, velocity, acceleration and jerk over the cam's angle, by time at its speed."""
     phi, unit, omega = samples(found), unit_of(found.cam), found.speed_rad_s
-    labels = (f"lift [{unit}]", f"velocity [{unit}/s]", f"acceleration [{unit}/s²]")
-    panels = Panels(4, 1, 1.0, *SIDES, 0.22, between=(0.0, 0.16))
+    rates = ("lift", ""), ("velocity", "/s"), ("acceleration", "/s²"), ("jerk", "/s³")
+    series = enumerate(zip(rates, found.cam.law.at(phi), strict=True))
+    rows = [(f"{rate} [{unit}{by}]", one * omega**n) for n, ((rate, by), one) in series]
     notes = [f"{note}; at {omega:g} rad/s."]
     if found.cam.law.continuous < 2:
         notes.append("Where a rate jumps, the next one is infinite, and is not drawn there.")
-    figure, axes = sheet(COLUMN_IN, panels, f"Law of motion: {name}", [], notes)
-    for n, (one, series) in enumerate(zip(axes, found.cam.law.at(phi), strict=True)):
-        one.plot(np.degrees(phi), series * omega**n, **CURVE)
-        one.set_ylabel((*labels, f"jerk [{unit}/s³]")[n])
-        _mark(one, found, labelled=n == 3)
-    _name_segments(axes[0], found)
+    figure, top = _over_the_turn(f"Law of motion: {name}", found, rows, notes)
+    _name_segments(top, found)
     return figure
+
+
+def _over_the_turn(
+    title: str, found: ExaminedCam, rows: Sequence[tuple[str, Array]], notes: Sequence[str]
+) -> tuple[Figure, Axes]:
+    """Draw series over the cam's angle, a panel for each label; return the figure and its top."""
+    panels = Panels(len(rows), 1, 1.0, *SIDES, 0.22, between=(0.0, 0.16))
+    figure, axes = sheet(COLUMN_IN, panels, title, [], notes)
+    degrees = np.degrees(samples(found))
+    for one, (label, series) in zip(axes, rows, strict=True):
+        one.plot(degrees, series, **CURVE)
+        one.set_ylabel(label)
+        _mark(one, found, labelled=one is axes[-1])
+    return figure, axes[0]
 
 
 def _mark(axes: Axes, found: ExaminedCam, *, labelled: bool) -> None:
@@ -120,13 +131,7 @@ def draw_checks(name: str, note: str, found: ExaminedCam) -> Figure:
         ]
     notes = [f"{note}; curvature of the profile, positive where convex"]
     notes[0] += f"; forces at {found.speed_rad_s:g} rad/s." if forces is not None else "."
-    panels = Panels(len(rows), 1, 1.0, *SIDES, 0.12, between=(0.0, 0.16))
-    figure, axes = sheet(COLUMN_IN, panels, f"Pressure angle and forces: {name}", [], notes)
-    for one, (label, series) in zip(axes, rows, strict=True):
-        one.plot(np.degrees(phi), series, **CURVE)
-        one.set_ylabel(label)
-        _mark(one, found, labelled=one is axes[-1])
-    return figure
+    return _over_the_turn(f"Pressure angle and forces: {name}", found, rows, notes)[0]
 
 
 def draw_pressure(name: str, note: str, found: ExaminedCam) -> Figure:
