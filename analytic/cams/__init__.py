@@ -1,1 +1,1 @@
-"""Cams: profile, pressure angle, curvature, contact force, and the law of a given profile."""
+"""Cams: profile, pressure angle, curvature, contact force, and outlines for engines."""

@@ -8,9 +8,9 @@ from typing import Annotated
 
 from pydantic import Field, StrictBool, StrictInt, model_validator
 
-from models.errors import cut, few
+from models.errors import cut
 from models.files import schema
-from models.files.schema import LISTED, Name
+from models.files.schema import Name
 from models.scene import GROUND, Scene
 from models.scene.pairs import FITS, Gear
 
@@ -78,7 +78,7 @@ def faults_of_gears(gears: schema.RawTables, names: schema.NamesInTables) -> Ite
         bodies = [b for b in (listed if isinstance(listed, list) else []) if isinstance(b, str)]
         for place, body in [*(("bodies", b) for b in bodies), ("carrier", carrier)]:
             if isinstance(body, str) and body not in known:
-                yield f"{key}.{place}: found {cut(body)}; use one of {few(map(cut, known), LISTED)}"
+                yield f"{key}.{place}: found {cut(body)}; {schema.use_one_of(known)}"
         if len(bodies) == 2 and bodies[0] == bodies[1]:
             yield f"{key}.bodies: found {cut(bodies[0])} twice; name two bodies"
         elif carrier in bodies:

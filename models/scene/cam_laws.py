@@ -330,6 +330,13 @@ class CamLaw:
 
     def extremes(self, order: int) -> tuple[float, float]:
         """Return the least and largest value of a derivative, exactly; 0 is the lift itself."""
+        return self._extremes[order]
+
+    @cached_property  # bounds need them at every solution
+    def _extremes(self) -> tuple[tuple[float, float], ...]:
+        return tuple(map(self._extremes_of, range(4)))
+
+    def _extremes_of(self, order: int) -> tuple[float, float]:
         _, terms, (size, rate, phase), half = self._pieces
         found = []
         for k in range(len(half)):

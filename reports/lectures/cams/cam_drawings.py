@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from analytic.cams.cam_design import ExaminedCam
-from analytic.cams.profile import touch
+from analytic.cams.profile import touch, turn_of
 from models.array import Array
 from reports.figures.sheet import SIDES, Panels, sheet
 from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, Look, saved, shorten, styled
@@ -52,7 +52,7 @@ def drawings(name: str, source: str, found: ExaminedCam, paper: str) -> Mapping[
 
 def samples(found: ExaminedCam) -> Array:
     """Return angles over a turn, dense between knots, with limits from both sides of them (T,)."""
-    knots = np.array([*found.cam.law.knots_rad, math.tau])
+    knots = turn_of(found.cam)
     spans = [np.linspace(a, np.nextafter(b, 0.0), STEPS) for a, b in pairwise(knots)]
     return np.concatenate(spans)
 
