@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import zip_longest
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -57,12 +58,10 @@ class Peaks(NamedTuple):
     jerk: float
 
 
-@dataclass(frozen=True)
-class _Piece:
-    """y = sum of c_k t^k + size sin(rate t + phase), t from -1 at ``start`` to 1 at ``end``."""
+class _Piece(NamedTuple):
+    """y = sum of c_k t^k + size sin(rate t + phase), t from -1 at ``start`` to 1 at the end."""
 
     start: float
-    end: float
     coefficients: tuple[float, ...]
     size: float = 0.0
     rate: float = 0.0
@@ -136,10 +135,7 @@ def _spline(table: CamSegment) -> list[_Piece]:
     spline = make_interp_spline(share, lift, k, bc_type=conditions)
     middle, half = 0.5 * (share[1:] + share[:-1]), 0.5 * np.diff(share)
     terms = np.array([spline(middle, n) * half**n / math.factorial(n) for n in range(k + 1)]).T
-    return [
-        _Piece(float(a), float(b), tuple(c.tolist()))
-        for a, b, c in zip(share[:-1], share[1:], terms, strict=True)
-    ]
+    return [_Piece(a, tuple(c)) for a, c in zip(share[:-1].tolist(), terms.tolist(), strict=True)]
 
 
 def _integrated(*parts: tuple[float, float, float, float]) -> list[_Piece]:
@@ -153,44 +149,38 @@ def _integrated(*parts: tuple[float, float, float, float]) -> list[_Piece]:
         middle_speed = speed + a * w - (b / w * f * math.cos(phase) if f else 0.0)
         middle_lift = lift + middle_speed * w - 0.5 * a * w**2 - b * math.sin(phase)
         terms = (middle_lift, middle_speed * w, 0.5 * a * w**2)
-        found.append(_Piece(start, end, terms, b, f, phase + f))
+        found.append(_Piece(start, terms, b, f, phase + f))
         lift = sum(terms) + b * math.sin(phase + 2.0 * f)
         speed = middle_speed + a * w + (b / w * f * math.cos(phase + 2.0 * f) if f else 0.0)
         start = end
     return found
 
 
-def _modified_trapezoid() -> list[_Piece]:
-    """Sines of a quarter wave over 1/8 of the span each, constant parts of 1/4 between them."""
-    top, rate = 8.0 * PI / (PI + 2.0), 4.0 * PI
-    return _integrated(
-        (1 / 8, top, rate, 0.0),
-        (3 / 8, top, 0.0, 0.0),
-        (5 / 8, top, rate, PI / 2),
-        (7 / 8, -top, 0.0, 0.0),
-        (1.0, -top, rate, PI / 2),
-    )
-
-
-def _modified_sine() -> list[_Piece]:
-    """Quarter waves over 1/8 of the span at both ends, half a slow wave between them."""
-    top, rate, late = 4.0 * PI**2 / (PI + 4.0), 4.0 * PI, PI / 2
-    return _integrated((1 / 8, top, rate, 0.0), (7 / 8, top, rate / 3, late), (1, -top, rate, late))
-
-
-UNIT: Mapping[str, Callable[[], list[_Piece]]] = {
-    "dwell": lambda: [_Piece(0.0, 1.0, (0.0,))],
-    "uniform": lambda: [_Piece(0.0, 1.0, (0.5, 0.5))],
-    "parabolic": lambda: _integrated((0.5, 4.0, 0.0, 0.0), (1.0, -4.0, 0.0, 0.0)),
-    "harmonic": lambda: [_Piece(0.0, 1.0, (0.5,), 0.5, PI / 2, 0.0)],
-    "cycloidal": lambda: [_Piece(0.0, 1.0, (0.5, 0.5), 0.5 / PI, PI, 0.0)],
+TRAPEZOID, SINE = 8.0 * PI / (PI + 2.0), 4.0 * PI**2 / (PI + 4.0)
+"""Peaks of acceleration of the two modified laws."""
+UNIT: Mapping[str, list[_Piece]] = {
+    "dwell": [_Piece(0.0, (0.0,))],
+    "uniform": [_Piece(0.0, (0.5, 0.5))],
+    "parabolic": _integrated((0.5, 4.0, 0.0, 0.0), (1.0, -4.0, 0.0, 0.0)),
+    "harmonic": [_Piece(0.0, (0.5,), 0.5, PI / 2)],
+    "cycloidal": [_Piece(0.0, (0.5, 0.5), 0.5 / PI, PI)],
     # dy/dt = 15/16 (1 - t^2)^2 and 35/32 (1 - t^2)^3: odd about the middle.
-    "3-4-5": lambda: [_Piece(0.0, 1.0, (0.5, 15 / 16, 0.0, -10 / 16, 0.0, 3 / 16))],
-    "4-5-6-7": lambda: [
-        _Piece(0.0, 1.0, (0.5, 35 / 32, 0.0, -35 / 32, 0.0, 21 / 32, 0.0, -5 / 32))
-    ],
-    "modified-trapezoid": _modified_trapezoid,
-    "modified-sine": _modified_sine,
+    "3-4-5": [_Piece(0.0, (0.5, 15 / 16, 0.0, -10 / 16, 0.0, 3 / 16))],
+    "4-5-6-7": [_Piece(0.0, (0.5, 35 / 32, 0.0, -35 / 32, 0.0, 21 / 32, 0.0, -5 / 32))],
+    # Sines of a quarter wave over 1/8 of the span each, constant parts of 1/4 between them.
+    "modified-trapezoid": _integrated(
+        (1 / 8, TRAPEZOID, 4.0 * PI, 0.0),
+        (3 / 8, TRAPEZOID, 0.0, 0.0),
+        (5 / 8, TRAPEZOID, 4.0 * PI, PI / 2),
+        (7 / 8, -TRAPEZOID, 0.0, 0.0),
+        (1.0, -TRAPEZOID, 4.0 * PI, PI / 2),
+    ),
+    # Quarter waves over 1/8 of the span at both ends, half a slow wave between them.
+    "modified-sine": _integrated(
+        (1 / 8, SINE, 4.0 * PI, 0.0),
+        (7 / 8, SINE, 4.0 * PI / 3, PI / 2),
+        (1.0, -SINE, 4.0 * PI, PI / 2),
+    ),
 }
 """Rises of unit lift over unit span."""
 KINDS = (*UNIT, "table")
@@ -198,7 +188,7 @@ KINDS = (*UNIT, "table")
 
 def _rates(terms: Any, t: Any, sine: Any, cosine: Any, rate: Any, half: Any) -> Any:
     """Return a polynomial and sine with three derivatives, for numbers or arrays (T,)."""
-    value = first = second = third = 0.0 * t
+    value = first = second = third = 0.0
     for c in terms[::-1]:  # Horner's scheme for all Taylor terms at once
         third, second = third * t + second, second * t + first
         first, value = first * t + value, value * t + c
@@ -240,20 +230,15 @@ class CamLaw:
 
     def scaled(self, factor: float) -> CamLaw:
         """Return the law with every lift times a factor."""
-        return CamLaw(
-            tuple(
-                replace(
-                    one,
-                    lift=factor * one.lift,
-                    points=tuple((angle, factor * lift) for angle, lift in one.points),
-                )
-                for one in self.segments
-            )
-        )
+        grown = []
+        for one in self.segments:
+            points = tuple((angle, factor * lift) for angle, lift in one.points)
+            grown.append(replace(one, lift=factor * one.lift, points=points))
+        return CamLaw(tuple(grown))
 
     @cached_property  # once for all evaluations
     def _pieces(self) -> tuple[Array, Array, Array, Array]:
-        """Ends (n + 1,) [rad] of the pieces, coefficients (8, n), sines, half widths."""
+        """Ends (n + 1,) [rad] of the pieces, coefficients (up to 8, n), sines, half widths."""
         spans = np.array([one.span_rad for one in self.segments])
         angles = np.append(0.0, np.cumsum(spans)) * (math.tau / math.fsum(spans))
         lifts = np.append(0.0, np.cumsum([one.lift for one in self.segments[:-1]]))
@@ -262,14 +247,14 @@ class CamLaw:
         for k, each in enumerate(self.segments):
             table, span = each.kind == "table", angles[k + 1] - angles[k]
             lift = 1.0 if table else each.lift
-            for one in _spline(each) if table else UNIT[each.kind]():
+            for one in _spline(each) if table else UNIT[each.kind]:
                 ends.append(angles[k] + span * one.start)
-                column = lift * np.array(one.coefficients + (0.0,) * (8 - len(one.coefficients)))
-                column[0] += lifts[k]
-                columns.append(column)
+                first, *others = (lift * c for c in one.coefficients)
+                columns.append((lifts[k] + first, *others))
                 sines.append((lift * one.size, one.rate, one.phase))
         ends.append(math.tau)
-        return np.array(ends), np.array(columns).T, np.array(sines).T, 0.5 * np.diff(ends)
+        terms = np.array([*zip_longest(*columns, fillvalue=0.0)])
+        return np.array(ends), terms, np.array(sines).T, 0.5 * np.diff(ends)
 
     @cached_property
     def _rows(self) -> tuple[list[float], list[tuple[Any, ...]]]:
