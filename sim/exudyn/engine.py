@@ -14,8 +14,7 @@ from sim.engine import BodyPose, Drive, Facts, Log, Poses, Settings, measure
 from sim.engine.settings import shipped_engine
 from sim.exudyn import acting, crank_drive, system
 from sim.exudyn import settings as own_settings
-from sim.exudyn.cam_relations import add_cam
-from sim.exudyn.meshes import add_mesh
+from sim.exudyn.higher_pairs import add_cam, add_gear
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
 
 LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
@@ -92,7 +91,7 @@ class ExudynSession:
             self._model = system.build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
             for gear in scene.gears.values():
-                add_mesh(self._model, gear)
+                add_gear(self._model, gear)
             for cam in scene.cams.values():
                 add_cam(self._model, cam)
             self._looked = dict(self._model.looked)
