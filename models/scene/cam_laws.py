@@ -14,7 +14,6 @@ from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import zip_longest
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +25,7 @@ ORDERS = (1, 3, 5, 7)
 """Degrees of the spline of a table whose knots are its rows."""
 SLACK = 1e-9
 """Rounding in the sum of spans over a turn, of lifts over the stroke, in a jump over its peak."""
-PI = math.pi
+PI, MOST_TERMS = math.pi, 8
 
 
 class CamLift(NamedTuple):
@@ -186,9 +185,11 @@ UNIT: Mapping[str, list[_Piece]] = {
 KINDS = (*UNIT, "table")
 
 
-def _rates(terms: Any, t: Any, sine: Any, cosine: Any, rate: Any, half: Any) -> Any:
-    """Return a polynomial and sine with three derivatives, for numbers or arrays (T,)."""
-    value = first = second = third = 0.0
+def _rates(t: Any, of: Any, terms: Any, size: Any, rate: Any, phase: Any, half: Any) -> Any:
+    """Return lift and three derivatives in a piece or, as arrays (T,), in several."""
+    angle = rate * t + phase
+    sine, cosine = size * of.sin(angle), size * of.cos(angle)
+    value = first = second = third = 0.0 * t
     for c in terms[::-1]:  # Horner's scheme for all Taylor terms at once
         third, second = third * t + second, second * t + first
         first, value = first * t + value, value * t + c
@@ -237,35 +238,35 @@ class CamLaw:
         return CamLaw(tuple(grown))
 
     @cached_property  # once for all evaluations
-    def _pieces(self) -> tuple[Array, Array, Array, Array]:
-        """Ends (n + 1,) [rad] of the pieces, coefficients (up to 8, n), sines, half widths."""
+    def _pieces(self) -> tuple[Array, Array]:
+        """Ends (n + 1,) [rad] of the pieces; coefficients, sines, half widths (12, n) of each."""
         spans = np.array([one.span_rad for one in self.segments])
         angles = np.append(0.0, np.cumsum(spans)) * (math.tau / math.fsum(spans))
         lifts = np.append(0.0, np.cumsum([one.lift for one in self.segments[:-1]]))
         lifts -= lifts.min()
-        ends, columns, sines = [], [], []
+        ends, rows = [], []
         for k, each in enumerate(self.segments):
             table, span = each.kind == "table", angles[k + 1] - angles[k]
             lift = 1.0 if table else each.lift
             for one in _spline(each) if table else UNIT[each.kind]:
                 ends.append(angles[k] + span * one.start)
-                first, *others = (lift * c for c in one.coefficients)
-                columns.append((lifts[k] + first, *others))
-                sines.append((lift * one.size, one.rate, one.phase))
+                terms = one.coefficients + (0.0,) * (MOST_TERMS - len(one.coefficients))
+                first, *others = (lift * c for c in (*terms, one.size))
+                rows.append((lifts[k] + first, *others, one.rate, one.phase))
         ends.append(math.tau)
-        terms = np.array([*zip_longest(*columns, fillvalue=0.0)])
-        return np.array(ends), terms, np.array(sines).T, 0.5 * np.diff(ends)
+        half = 0.5 * np.diff(ends)
+        return np.array(ends), np.array([*np.array(rows).T, half])
 
     @cached_property
     def _rows(self) -> tuple[list[float], list[tuple[Any, ...]]]:
         """The same as plain numbers, a row each piece: an array's are read ten times as slowly."""
-        ends, terms, (size, rate, phase), half = (each.tolist() for each in self._pieces)
-        return ends, list(zip(zip(*terms, strict=True), size, rate, phase, half, strict=True))
+        ends, pieces = self._pieces
+        return ends.tolist(), [(row[:-4], *row[-4:]) for row in pieces.T.tolist()]
 
     def at(self, phi: Array) -> CamLift:
         """Return lift and derivatives at angles (T,) [rad] of any turn; in a knot those after it.
         Accurate to rounding of the stroke, over the span to the power of the derivative."""
-        ends, _, _, half = self._pieces
+        ends, (*_, half) = self._pieces
         folded = np.mod(np.asarray(phi, dtype=np.float64), math.tau)
         k = np.clip(np.searchsorted(ends, folded, side="right") - 1, 0, len(half) - 1)
         return self._in(k, np.clip((folded - ends[k]) / half[k] - 1.0, -1.0, 1.0))
@@ -275,18 +276,13 @@ class CamLaw:
         ends, rows = self._rows
         folded = phi % math.tau
         k = min(bisect_right(ends, folded), len(rows)) - 1
-        terms, size, rate, phase, half = rows[k]
-        t = min((folded - ends[k]) / half - 1.0, 1.0)
-        angle = rate * t + phase
-        sine, cosine = size * math.sin(angle), size * math.cos(angle)
-        return tuple(_rates(terms, t, sine, cosine, rate, half))
+        t = min((folded - ends[k]) / rows[k][-1] - 1.0, 1.0)
+        return tuple(_rates(t, math, *rows[k]))
 
     def _in(self, k: NDArray[np.intp], t: Array) -> CamLift:
         """Lift and derivatives in pieces ``k`` at their own ``t``, between -1 and 1."""
-        _, terms, (size, rate, phase), half = self._pieces
-        angle = rate[k] * t + phase[k]
-        sine, cosine = size[k] * np.sin(angle), size[k] * np.cos(angle)
-        return CamLift(*_rates(terms[:, k], t, sine, cosine, rate[k], half[k]))
+        pieces = self._pieces[1][:, k]
+        return CamLift(*_rates(t, np, pieces[:-4], *pieces[-4:]))
 
     @property
     def knots_rad(self) -> tuple[float, ...]:
@@ -296,7 +292,7 @@ class CamLaw:
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
         """Knots at which lift, velocity, acceleration or jerk jump, and by how much."""
-        ends, terms, _, half = self._pieces
+        ends, (*terms, _, _, _, half) = self._pieces
         count, size = np.arange(len(half)), np.abs(terms).max()
         ending, beginning = (self._in(count, np.full(len(half), t)) for t in (1.0, -1.0))
         steps = []
@@ -322,18 +318,17 @@ class CamLaw:
         return tuple(map(self._extremes_of, range(4)))
 
     def _extremes_of(self, order: int) -> tuple[float, float]:
-        _, terms, (size, rate, phase), half = self._pieces
         found = []
-        for k in range(len(half)):
+        for k, (terms, size, rate, phase, _) in enumerate(self._rows[1]):
             turning = [-1.0, 1.0]
-            if size[k] == 0.0:
-                slope = np.polynomial.Polynomial(terms[:, k]).deriv(order + 1)
+            if size == 0.0:
+                slope = np.polynomial.Polynomial(terms).deriv(order + 1)
                 roots = slope.trim().roots() if np.any(slope.coef) else np.zeros(0)
                 turning += [r.real for r in np.atleast_1d(roots) if abs(r.imag) < 1e-7]
             else:  # the sine's own; the polynomial beside it is straight, but in lift and velocity
                 quarter = 0.5 * PI * (order + 1)
-                waves = range(math.floor(-rate[k] / PI) - 4, math.ceil(rate[k] / PI) + 5)
-                turning += [(n * PI - phase[k] - quarter) / rate[k] for n in waves]
+                waves = range(math.floor(-rate / PI) - 4, math.ceil(rate / PI) + 5)
+                turning += [(n * PI - phase - quarter) / rate for n in waves]
             inside = np.array([t for t in turning if abs(t) <= 1.0])
             found.append(self._in(np.full(len(inside), k), inside)[order])
         return float(min(map(np.min, found))), float(max(map(np.max, found)))
@@ -341,7 +336,8 @@ class CamLaw:
     @property
     def stroke(self) -> float:
         """Difference of the largest and the least lift [m or rad]."""
-        return -float(np.subtract(*self.extremes(0)))
+        low, high = self.extremes(0)
+        return high - low
 
     def peaks(self) -> Peaks:
         """Return the peaks over a turn."""
