@@ -9,9 +9,10 @@
                                  s'       sense), along u as fast as its follower; where that turns,
                                           A is on the line through O and its pivot, and u across it.
 
-Both ends are set anew before each step, in cams for the chord of the law over the step; the error
-of the place so far is that of the joint's distance. Chipmunk's gear joint couples two bodies, and
-so holds gears on a carrier at rest.
+Both ends are set anew before each step; the error of the place so far is that of the joint's
+distance, and so is the bend of a cam's law over the step. (Along the chord of the law, half a step
+ahead, the force would give or take energy, to first order in the step.) Chipmunk's gear joint
+couples two bodies, and so holds gears on a carrier at rest.
 """
 
 import math
@@ -26,8 +27,6 @@ from models.scene.joints import turned
 from models.scene.pairs import CamPair, Gear
 from sim.pymunk.native import SpaceBodies
 
-LEAST_CHORD = 1e-9
-"""Turn of a cam in a step [rad] below which the chord of its law is its tangent."""
 PARALLEL = 1e-6
 """Least difference of the follower's turning from the cam's, over the cam's."""
 Rolling = tuple[Point, Point, float]
@@ -70,24 +69,23 @@ def cam_line(placed: SpaceBodies, pair: CamPair, dt_s: float) -> pymunk.Constrai
     def rolling() -> Rolling:
         angle = cam.angle - carrier.angle
         turning = dt_s * (cam.angular_velocity - carrier.angular_velocity)
-        value, chord, _ = pair.lift(angle)
-        if abs(turning) > LEAST_CHORD:
-            chord = (pair.lift(angle + turning)[0] - value) / turning
+        slope, ahead = pair.lift(angle)[1], pair.lift(angle + turning)[0]
+        wanted = lowest + ahead - slope * turning
         ox, oy = placed.at(pair.cam, pivots[0])
         if pair.slider:
             slider = scene.sliders[pair.slider]
             u = turned((1.0, 0.0), carrier.angle + slider.direction_rad)
             through = carrier.local_to_world(placed.from_centre(slider.on, slider.through_m))
             x, y = placed.at(pair.follower, slider.point)
-            off = u[0] * (x - through.x) + u[1] * (y - through.y) - (lowest + value)
-            return (ox + chord * u[1], oy - chord * u[0]), u, off
-        if abs(chord - 1.0) < PARALLEL:
+            off = u[0] * (x - through.x) + u[1] * (y - through.y) - wanted
+            return (ox + slope * u[1], oy - slope * u[0]), u, off
+        if abs(slope - 1.0) < PARALLEL:
             raise EngineError(f"cams.{pair.name}: its follower turns as fast as the cam")
         px, py = placed.at(pair.follower, pivots[1])
         apart = float(np.hypot(px - ox, py - oy))
         ex, ey = (px - ox) / apart, (py - oy) / apart
-        x = chord * apart / (chord - 1.0)  # omega_cam x = omega_follower (x - apart)
-        off = follower.angle - carrier.angle - (lowest + value)
+        x = slope * apart / (slope - 1.0)  # omega_cam x = omega_follower (x - apart)
+        off = follower.angle - carrier.angle - wanted
         off = (off + math.pi) % math.tau - math.pi
         return (ox + x * ex, oy + x * ey), (-ey, ex), off * (x - apart)
 
