@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.scene.cam_laws import CamLift
+from models.scene.cam_laws import CamLaw, CamLift
 from models.scene.cams import Cam, OscillatingFollower
 
 Plane = NDArray[np.complex128]
@@ -180,3 +180,9 @@ def largest(knots: Sequence[float], quantity: Callable[[Array], Array]) -> tuple
 def turn_of(cam: Cam) -> tuple[float, ...]:
     """Return the knots of its law over one turn, both ends with them [rad]."""
     return (*cam.law.knots_rad, math.tau)
+
+
+def corners(law: CamLaw, sign: int = 1) -> list[float]:
+    """Return the angles [rad] of the corners of a profile: where the velocity of its law drops, or,
+    with ``sign`` -1, grows, and the corner is concave."""
+    return [one.angle_rad for one in law.jumps if sign * one.velocity < 0.0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.cams.base_circle import refuse_undercut
+from analytic.cams.cam_design import refuse_undercut
 from analytic.cams.profile import turn_of
 from analytic.dyads.chunk import SINES, Chunk
 from analytic.dyads.parts import SlideError, Sliding
