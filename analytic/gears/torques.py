@@ -67,11 +67,6 @@ class TrainTorques:
         return sum(power for power in self.powers_w.values() if power > 0.0)
 
     @property
-    def loss_w(self) -> float:
-        """Power that is lost in all meshes."""
-        return sum(mesh.loss_w for mesh in self.meshes)
-
-    @property
     def efficiency(self) -> float | None:
         """Power out over power in; None where nothing goes in."""
         out = -sum(power for power in self.powers_w.values() if power < 0.0)

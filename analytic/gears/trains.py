@@ -107,33 +107,29 @@ class Train:
             for body, row in coefficients.items()
         }
 
-    def _locked(self) -> list[Gear]:
-        """Return pairs that lock each other, as few as do: without any one of them they move.
-
-        A pair is locked where every motion of the train, the ground free to turn too, turns it as
-        one body: then its gear's speed less its carrier's is a combination of the rows.
-        """
-        for gear in self.gears:
-            one = next(body for body in gear.bodies if body != gear.carrier)
-            if _locks(self.gears, one, gear.carrier):
-                least = list(self.gears)
-                for other in self.gears:
-                    without = [each for each in least if each is not other]
-                    if _locks(without, one, gear.carrier):
-                        least = without
-                return least
-        return []
+    def _locked(self) -> Sequence[Gear]:
+        """Return pairs that lock each other, as few as do: without any one of them they move."""
+        least = self.gears if _lock(self.gears) else ()
+        for gear in least:
+            without = tuple(each for each in least if each is not gear)
+            least = without if _lock(without) else least
+        return least
 
     def _listed(self) -> str:
         return few(self.bodies, LISTED)
 
 
-def _locks(gears: Sequence[Gear], first: str, second: str) -> bool:
-    """True if the relations of the pairs leave two bodies no other motion than as one."""
-    bodies = tuple(dict.fromkeys((first, second, *(b for g in gears for b in g.relation))))
-    apart = [Fraction((body == first) - (body == second)) for body in bodies]
-    rows = _rows(gears, bodies)
-    return len(reduced([*rows, apart])[1]) == len(reduced(rows)[1])
+def _lock(gears: Sequence[Gear]) -> bool:
+    """True if every motion, the ground free to turn too, turns one of the pairs as one body: then
+    its gear's speed less its carrier's is a combination of the rows."""
+    bodies = {body: None for gear in gears for body in gear.relation}
+    rows, rank = _rows(gears, bodies), _rank(gears, bodies)
+    for gear in gears:
+        one = next(body for body in gear.bodies if body != gear.carrier)
+        apart = [Fraction((body == one) - (body == gear.carrier)) for body in bodies]
+        if len(reduced([*rows, apart])[1]) == rank:
+            return True
+    return False
 
 
 def _rows(gears: Iterable[Gear], bodies: Collection[str]) -> list[list[Fraction]]:

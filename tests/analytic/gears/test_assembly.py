@@ -14,7 +14,16 @@ from tests.models.scene.test_gears import PLANETARY
 
 def stage(sun: int, p: int, q: int, other: int, *, internal: bool = True) -> PlanetStage:
     first = Gear("s", ("sun", "planet"), (sun, p), "arm")
-    return PlanetStage("planet", first, Gear("r", ("planet", "end"), (q, other), "arm", internal))
+    second = Gear("r", ("planet", "end"), (q, other), "arm", internal)
+    arm = {"O": (0.0, 0.0), "P": (0.06, 0.0)}
+    points = {
+        "arm": arm,
+        "sun": {"O": (0.0, 0.0)},
+        "end": {"O": (0.0, 0.0)},
+        "planet": {"P": (0.0, 0.0)},
+    }
+    (found,) = planet_stages([first, second], points)
+    return found
 
 
 @pytest.mark.parametrize("teeth", [(20, 40, 40, 100, True), (21, 19, 19, 59, True),
