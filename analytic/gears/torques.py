@@ -34,12 +34,14 @@ NOTHING = 1e-12
 @dataclass(frozen=True)
 class MeshLoad:
     """Torques of a mesh on its gears and its carrier, ``on_n_m`` by body, and its powers seen from
-    the carrier: ``rolling_w`` goes from the driving gear into the teeth, ``loss_w`` stays there."""
+    the carrier: ``rolling_w`` goes from the driving gear into the teeth, ``loss_w`` stays there.
+    It ``drives`` by its first gear (1) or its second (-1)."""
 
     gear: Gear
     on_n_m: Mapping[str, float]
     rolling_w: float
     loss_w: float
+    drives: int
 
     def tangential_n(self, module_m: float) -> float:
         """Return the tangential force between the teeth at the working pitch circles [N], that on
@@ -160,7 +162,7 @@ def _balanced(
     for gear, row, load in zip(train.gears, rows, size.tolist(), strict=True):
         on = {body: load * c for body, c in row.items()}
         into = [-on[body] * (speeds[body] - speeds[gear.carrier]) for body in gear.bodies]
-        meshes.append(MeshLoad(gear, on, max(into), sum(into)))
+        meshes.append(MeshLoad(gear, on, max(into), sum(into), 1 if into[0] > 0.0 else -1))
     return TrainTorques(speeds, outside, tuple(meshes))
 
 
@@ -172,10 +174,7 @@ def _coefficients(gear: Gear, drives: int) -> Mapping[str, float]:
 def _driving(found: TrainTorques, way: tuple[int, ...]) -> tuple[int, ...]:
     """Return who drives by the loads found; a mesh without power keeps its choice."""
     nothing = NOTHING * max(mesh.rolling_w for mesh in found.meshes)
-    drawn = []
-    for mesh, drives in zip(found.meshes, way, strict=True):
-        first, carrier = mesh.gear.bodies[0], mesh.gear.carrier
-        drift = found.speeds_rad_s[first] - found.speeds_rad_s[carrier]
-        into = -mesh.on_n_m[first] * drift
-        drawn.append(drives if abs(into) <= nothing or not drives else 1 if into > 0.0 else -1)
-    return tuple(drawn)
+    return tuple(
+        mesh.drives if drives and mesh.rolling_w > nothing else drives
+        for mesh, drives in zip(found.meshes, way, strict=True)
+    )

@@ -72,7 +72,9 @@ class Train:
         """
         for body in inputs:
             if body not in self.bodies:
-                raise CrankcheckError(f"{body}: no body of the train; use {self._listed()}")
+                raise CrankcheckError(
+                    f"{body}: no body of the train; use {few(self.bodies, LISTED)}"
+                )
         others = [body for body in self.bodies if body not in inputs]
         rows, pivots = reduced(_rows(self.gears, (*others, *inputs)))
         if pivots and pivots[-1] >= len(others):
@@ -91,10 +93,9 @@ class Train:
                 f"{self.mobility}, and they leave {few(hidden, LISTED)} open; give "
                 f"{self.mobility - len(inputs)} more"
             )
-        own = {body: tuple(-x for x in rows[n][len(others) :]) for n, body in enumerate(others)}
-        unit = {
-            body: tuple(Fraction(body == other) for other in inputs) for body in (GROUND, *inputs)
-        }
+        unit = {body: tuple(Fraction(body == one) for one in inputs) for body in (GROUND, *inputs)}
+        solved = zip(others, rows, strict=True)
+        own = {body: tuple(-x for x in row[len(others) :]) for body, row in solved}
         return {body: (own | unit)[body] for body in (GROUND, *self.bodies)}
 
     def speeds(self, inputs: Mapping[str, float]) -> dict[str, float]:
@@ -114,9 +115,6 @@ class Train:
             without = tuple(each for each in least if each is not gear)
             least = without if _lock(without) else least
         return least
-
-    def _listed(self) -> str:
-        return few(self.bodies, LISTED)
 
 
 def _lock(gears: Sequence[Gear]) -> bool:

@@ -21,7 +21,7 @@ from models.lectures.tasks.cams import CamTask, load_cam_task
 from models.scene.cam_laws import KINDS, CamLaw, Peaks, peak_factors
 from models.scene.cams import Cam
 from reports.lectures.cams.cam_scene import cam_scene
-from reports.lectures.cams.profile_files import ProfileFiles, unit_of
+from reports.lectures.cams.profile_files import profile_files, unit_of
 from reports.output.console import grid, say, say_whole, show_rows
 from reports.output.write import check_folder, write
 from reports.requests.options import PaperSize, argument, option
@@ -217,7 +217,7 @@ def _write(folder: Path, task: CamTask, found: ExaminedCam, request: CamRequest,
 
     scene = cam_scene(task.name, task.source, found)
     texts: dict[str, str | bytes] = {"cam.json": text, f"{task.name}.toml": scene_text(scene)}
-    texts |= ProfileFiles(task.name, found.cam, request.points).written()
+    texts |= profile_files(task.name, found.cam, request.points)
     texts |= drawings(task.name, task.source, found, number_words(found), request.paper)
     check_folder(folder, "-o", list(texts))
     for name, content in texts.items():
