@@ -16,30 +16,28 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.scene.pairs import Gear, Points
 
 WHOLE = 1e-6
 """Difference from a whole number that the places of planets may make, in teeth."""
-MOST_PLANETS = 30
-"""Largest number of planets that is tried."""
+LISTED = 30
+"""Numbers that a message lists."""
+Teeth = tuple[int, int]
+"""Teeth of a planet and of the central gear that it meshes with, negative of a ring."""
 
 
 @dataclass(frozen=True)
 class PlanetStage:
-    """A planet on a carrier between two central gears.
-
-    ``teeth`` are those of planet and central gear by mesh, negative of a ring, ``kind`` is what
-    equal planets have in common. It stands at ``angle_rad`` and ``distance_m`` from the centre, and
-    its largest gear has the ``tip_m`` radius of its addendum circle (0 without a module).
-    """
+    """A planet on a carrier between two central gears, ``teeth`` by mesh, at ``angle_rad`` from
+    their centre. ``kind`` is what equal planets have in common; ``most`` of them, evenly spread,
+    clear each other's addendum circles."""
 
     planet: str
     kind: tuple[object, ...]
-    teeth: tuple[tuple[int, int], tuple[int, int]]
-    angle_rad: float = 0.0
-    distance_m: float = 0.0
-    tip_m: float = 0.0
+    teeth: tuple[Teeth, Teeth]
+    angle_rad: float
+    most: int
 
     @property
     def period(self) -> int:
@@ -47,40 +45,27 @@ class PlanetStage:
         (p, a), (q, b) = self.teeth
         return abs(q * a - p * b) // math.gcd(p, q)
 
-    def clearance_m(self, count: int) -> float:
-        """Return the gap between the addendum circles of neighbours, ``count`` planets evenly
-        spread; negative where they overlap."""
-        return 2.0 * (self.distance_m * math.sin(math.pi / count) - self.tip_m)
-
-    def _overlaps(self, count: int) -> bool:
-        return count > 1 and self.tip_m > 0.0 and self.clearance_m(count) <= 0.0
-
+    @property
     def counts(self) -> list[int]:
         """Numbers of equal planets, evenly spread, that fit and clear each other."""
-        fitting = (n for n in range(1, MOST_PLANETS + 1) if self.period % n == 0)
-        return [n for n in fitting if not self._overlaps(n)]
+        return [n for n in range(1, self.most + 1) if self.period % n == 0]
 
     def check(self, count: int) -> None:
         """Raise CrankcheckError if so many equal planets do not fit, or touch each other."""
-        if count < 1 or self.period % count:
-            fault = (
-                f"equal planets like {self.planet} can not be assembled: {self.sum}/{count} = "
-                f"{self.period / max(count, 1):.6g} has to be a whole number"
-            )
-        elif self._overlaps(count):
-            apart_m = self.distance_m * math.sin(math.pi / count)
-            fault = (
-                f"planets like {self.planet} overlap: addendum circles of {2e3 * self.tip_m:.6g} "
-                f"mm stand {2e3 * apart_m:.6g} mm apart"
-            )
-        else:
+        if count in self.counts:
             return
-        raise CrankcheckError(f"{count} {fault}; {self.works}")
+        fault = f"overlap: {self.most} have room beside each other"
+        if count < 1 or self.period % count:
+            places = self.period / max(count, 1)
+            fault = (
+                f"can not be assembled: {self.sum}/{count} = {places:.6g} has to be a whole number"
+            )
+        raise CrankcheckError(f"{count} equal planets like {self.planet} {fault}; {self.works}")
 
     @property
     def works(self) -> str:
         """The numbers that work, in words."""
-        return f"numbers that work: {', '.join(map(str, self.counts()))}"
+        return f"numbers that work: {few(map(str, self.counts), LISTED)}"
 
     @property
     def sum(self) -> str:
@@ -95,23 +80,24 @@ def planet_stages(gears: Iterable[Gear], points: Mapping[str, Points]) -> list[P
     """Find the planets of a train that mesh with two central gears of one axis; ``points`` are
     those of all bodies (`models.scene.Scene.points_of`). Planets that mesh with planets are left
     out. Raises ValueError as `Gear.pivots`."""
-    meshes: dict[tuple[str, ...], list[tuple[str, tuple[int, int], float]]] = {}
+    meshes: dict[tuple[str, ...], list[tuple[str, Teeth, float]]] = {}
     for gear in gears:
         sign, (one, other), pivots = -1 if gear.internal else 1, gear.teeth, gear.pivots(points)
-        module = gear.module(points) or 0.0
+        distance = gear.distance_m(points)
         for n, teeth in enumerate(((one, sign * other), (other, sign * one))):
-            if pivots[0] != pivots[1]:
+            if distance > 0.0:
                 place = gear.bodies[n], gear.carrier, pivots[n], pivots[1 - n]
-                mesh = gear.bodies[1 - n], teeth, 0.5 * module * (teeth[0] + 2)
-                meshes.setdefault(place, []).append(mesh)
+                share = 0.5 * (gear.module(points) or 0.0) * (teeth[0] + 2) / distance
+                meshes.setdefault(place, []).append((gear.bodies[1 - n], teeth, share))
     stages = []
     for (planet, carrier, own, centre), its in meshes.items():
         (x, y), (ox, oy) = points[carrier][own], points[carrier][centre]
-        angle, distance = math.atan2(y - oy, x - ox), math.hypot(x - ox, y - oy)
         for (sun, teeth, tip), (ring, others, second_tip) in combinations(its, 2):
-            both, most = (teeth, others), max(tip, second_tip)
-            kind = carrier, sun, ring, both
-            stages.append(PlanetStage(planet, kind, both, angle, distance, most))
+            # Of n planets neighbours are 2 a sin(pi / n) apart, and their tips reach a share of a.
+            share = max(tip, second_tip)
+            most = math.ceil(math.pi / math.asin(share)) - 1 if share < 1.0 else 1
+            both, angle = (teeth, others), math.atan2(y - oy, x - ox)
+            stages.append(PlanetStage(planet, (carrier, sun, ring, both), both, angle, most))
     return stages
 
 

@@ -89,22 +89,12 @@ class TrainTorques:
 def torques(train: Train, inputs: Mapping[str, float], loads: Mapping[str, float]) -> TrainTorques:
     """Find the torques on all members in steady motion; those of the inputs close the balance.
 
-    Parameters
-    ----------
-    inputs : mapping
-        Speeds of independent bodies [rad/s], as many as the mobility.
-    loads : mapping
-        Known torques from outside [N m], counter-clockwise positive; others are 0.
+    ``inputs`` are speeds of independent bodies [rad/s], as many as the mobility, and ``loads`` the
+    known torques from outside [N m], counter-clockwise positive; others are 0. Equal planets share
+    a load evenly: the least sum of squares among all loads in balance.
 
-    Raises
-    ------
-    CrankcheckError
-        Inputs that depend on each other or leave some open (`Train.influence`); a load on an input,
-        or on a body that the train lacks; a self-locking train.
-
-    Notes
-    -----
-    Equal planets share a load evenly: the least sum of squares among all loads in balance.
+    Raises CrankcheckError for inputs as `Train.influence`, a load on an input or on a body that the
+    train lacks, and a self-locking train.
     """
     closing, speeds = tuple(inputs), train.speeds(inputs)
     for body in loads:

@@ -73,11 +73,11 @@ def designed(task: CamTask) -> ExaminedCam:
     """Return the cam of a task with its limits and its load. Raises CrankcheckError for one that
     undercuts, or where no base circle keeps the limits."""
     base, load, follower = task.base, task.load, task.follower.follower
-    rise, back = (
-        math.inf if angle is None else math.radians(angle)
-        for angle in (base.pressure_deg, base.return_pressure_deg)
+    limits = CamLimits(
+        math.radians(base.pressure_deg or math.inf),
+        math.radians(base.return_pressure_deg or math.inf),
+        base.least_radius_m or 0.0,
     )
-    limits = CamLimits(rise, back, base.least_radius_m or 0.0)
     sense = 1 if task.sense == "counter-clockwise" else -1
     try:
         if base.radius_m is None:

@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 from rich.console import Console
 
-from analytic.gears.assembly import PlanetStage, check_planets, planet_stages
+from analytic.gears.assembly import check_planets, planet_stages
 from analytic.gears.involute import TeethPair
 from analytic.gears.torques import MeshLoad, TrainTorques, torques
 from analytic.gears.trains import ElementaryTrain, Train, elementary_trains
@@ -25,7 +25,7 @@ COLUMNS = {
     "elementary_trains": "carrier gears basic_ratio of to",
     "meshes": "gear tangential_n radial_n rolling_w loss_w module_mm pressure_angle_deg",
     "teeth": "gear teeth pitch_mm base_mm tip_mm root_mm thickness_mm contact_ratio",
-    "planets": "planet numbers clearance_mm",
+    "planets": "planet numbers",
 }
 """Columns of the tables by name."""
 Rows = Iterable[tuple[object, ...]]
@@ -78,10 +78,11 @@ def _document(scene: Scene, request: GearsRequest) -> dict[str, object]:
     train = Train(tuple(scene.gears.values()))
     stages = planet_stages(train.gears, scene.points_of)
     check_planets(stages)
-    if request.planets is not None and not stages:
-        raise CrankcheckError("--planets: no planet of the scene meshes with two central gears")
-    for stage in stages if request.planets is not None else ():
-        stage.check(request.planets or 0)
+    if request.planets is not None:
+        if not stages:
+            raise CrankcheckError("--planets: no planet of the scene meshes with two central gears")
+        for stage in stages:
+            stage.check(request.planets)
     pairs = _pairs(scene, request.shift)
     inputs = _inputs(scene, train, _values(request.speed, "--speed", train.bodies))
     given = _values(request.torque, "--torque", train.bodies)
@@ -103,7 +104,7 @@ def _document(scene: Scene, request: GearsRequest) -> dict[str, object]:
         **_table("elementary_trains", map(_basic_ratio, elementary_trains(train.gears))),
         **_table("meshes", (_mesh(scene, mesh) for mesh in found.meshes if loads)),
         **_table("teeth", (row for pair in pairs for row in _teeth(pair))),
-        **_table("planets", (_planet(stage, request.planets) for stage in stages)),
+        **_table("planets", ((stage.planet, stage.counts) for stage in stages)),
         "notes": _notes(train, found, source, bool(loads), request.planets),
     }
 
@@ -188,11 +189,6 @@ def _mesh(scene: Scene, mesh: MeshLoad) -> tuple[object, ...]:
     force, angle = mesh.tangential_n(module), mesh.gear.pressure_angle_rad
     forces = force, force * math.tan(angle)
     return mesh.gear.name, *forces, *powers, 1e3 * module, math.degrees(angle)
-
-
-def _planet(stage: PlanetStage, count: int | None) -> tuple[object, ...]:
-    gap = None if count is None or count < 2 else 1e3 * stage.clearance_m(count)
-    return stage.planet, stage.counts(), gap
 
 
 def _notes(
