@@ -1,5 +1,5 @@
-"""Drawings of a cam: diagrams over its angle, its profile coloured by the pressure angle, and the
-cam with its follower to scale."""
+"""Drawings of a cam: diagrams over its angle, and the cam with its follower to scale, its profile
+coloured by the pressure angle."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from analytic.cams.profile import CamContact, Plane, largest, touch, turn_of
 from models.array import Array
 from models.scene.cams import Cam, OscillatingFollower
 from reports.figures.sheet import SIDES, Panels, sheet
-from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, Look, saved, shorten, styled
+from reports.figures.style import COLUMN_IN, INK, QUIET, TINY, Look, saved, shorten, styled
 from reports.lectures.cams.profile_files import unit_of
 from reports.lectures.drawing.sheets.paper import (
     Canvas,
@@ -44,8 +44,8 @@ ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 ROUND = np.exp(1j * np.linspace(0.0, math.tau, 361))
 STEPS = 240
 """Samples between two knots."""
-WORDS_MM, LINE_MM = 62.0, 5.2
-"""Width of the numbers beside the cam, and the height of one."""
+WORDS_MM, LINE_MM, BAR_MM = 62.0, 5.2, 14.0
+"""Width of the numbers beside the cam, and the heights of one, and of the colours below them."""
 
 
 def drawings(
@@ -60,8 +60,6 @@ def drawings(
             "diagrams": draw_diagrams(name, note, found),
             "checks": draw_checks(name, note, found),
         }
-        if any(angle for angle, _ in found.pressures):
-            figures["pressure"] = draw_pressure(name, note, found)
         drawn = draw_cam(name, note, found, numbers, size)
     for kind in ("svg", "pdf"):
         files |= {
@@ -145,40 +143,6 @@ def draw_checks(name: str, note: str, found: ExaminedCam) -> Figure:
     return _over_the_turn(f"Pressure angle and forces: {name}", found, rows, notes)[0]
 
 
-def draw_pressure(name: str, note: str, found: ExaminedCam) -> Figure:
-    """Draw the profile coloured by the magnitude of the pressure angle of the point in contact."""
-    contact = touch(found.cam, samples(found))
-    profile = contact.on_cam(contact.contact) * 1000.0
-    (rise, at), (back, back_at) = found.pressures
-    words = [
-        f"{note}; dots: largest in the rise {math.degrees(rise):.4g} deg, in the return "
-        f"{math.degrees(back):.4g} deg."
-    ]
-    marker: Look = {"color": INK, "marker": "o", "markersize": 2.6, "linestyle": "none"}
-    entries = [(Line2D([], [], **CIRCLE), "base circle"), (Line2D([], [], **marker), "largest")]
-    panels = Panels(1, 1, 2.5, 0.48, 0.62, 0.1)
-    figure, (axes,) = sheet(COLUMN_IN, panels, f"Pressure angle: {name}", entries, words)
-    points = np.array([profile.real, profile.imag]).T
-    drawn = LineCollection(
-        list(np.stack([points[:-1], points[1:]], axis=1)), cmap=COLOURS, linewidths=3.0,
-        array=np.abs(np.degrees(contact.pressure_rad[:-1])), capstyle="round",
-    )  # fmt: skip
-    axes.add_collection(drawn)
-    turn = ROUND * found.cam.base_m * 1000.0
-    axes.plot(turn.real, turn.imag, **CIRCLE)
-    axes.plot(0.0, 0.0, "+", color=INK, markersize=5.0)
-    there = touch(found.cam, np.array([at, back_at]))
-    dots = there.on_cam(there.contact) * 1000.0
-    axes.plot(dots.real, dots.imag, **marker)
-    axes.set(xlabel="x [mm]", ylabel="y [mm]")
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.06)
-    box = axes.get_position()
-    bar = figure.add_axes((box.x1 + 0.03, box.y0, 0.03, box.height))
-    figure.colorbar(drawn, cax=bar).set_label("pressure angle [deg]", size=SMALL)
-    return figure
-
-
 @dataclass(frozen=True)
 class CamPlot:
     """Axes in millimetres of the sheet, and a drawing to scale in them."""
@@ -201,7 +165,8 @@ def draw_cam(
     name: str, note: str, found: ExaminedCam, numbers: Mapping[str, str], paper: Paper
 ) -> Canvas:
     """Draw the cam with its follower where the pressure angle of the rise is largest, or the speed
-    of one that has no such angle."""
+    of one that has no such angle; the colour of the profile is the angle of the point in contact.
+    """
     cam, (most, phi) = found.cam, found.pressures[0]
     if not most:
         phi = largest(turn_of(cam), lambda at: cam.law.at(at).first)[1]
@@ -220,6 +185,17 @@ def draw_cam(
     if cam.follower.roller_m and round_.pitch is not None:
         plot.curve(round_.on_cam(round_.pitch) * turned, **PITCH)
     plot.curve(profile, **CURVE)
+    if round_.pressure_rad.any():
+        points = plot.place(profile)
+        drawn = LineCollection(
+            list(np.stack([points[:-1], points[1:]], axis=1)), cmap=COLOURS, linewidths=3.0,
+            array=np.abs(np.degrees(round_.pressure_rad[:-1])), capstyle="round",
+        )  # fmt: skip
+        plot.axes.add_collection(drawn)
+        place = np.array([words.left, words.bottom + BAR_MM - 4.0, 0.9 * WORDS_MM, 4.0])
+        bar = canvas.figure.add_axes(place / np.tile([paper.width, paper.height], 2))
+        label = "pressure angle [deg]"
+        canvas.figure.colorbar(drawn, cax=bar, orientation="horizontal").set_label(label)
     plot.curve(0.06 * size * ROUND, **FOLLOWER)
     plot.write(0j, "O", 2.0, -4.0)
     for line in lines:
@@ -232,7 +208,7 @@ def draw_cam(
     before, end = plot.place(arc[-2:])
     arrow_head(plot.axes, end, (end - before) / np.hypot(*(end - before)), INK)
     shown = {"scale m/mm": f"{scale:g}", "shown at deg": f"{math.degrees(phi):.4g}", **numbers}
-    down = min(LINE_MM, words.height / (len(shown) + 1))
+    down = min(LINE_MM, (words.height - BAR_MM) / (len(shown) + 1))
     for k, (head, number) in enumerate(shown.items(), start=1):
         text(frame, words.left, words.top - k * down, head, color=QUIET)
         text(frame, words.left + 0.65 * WORDS_MM, words.top - k * down, number)
