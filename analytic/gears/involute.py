@@ -82,11 +82,6 @@ class TeethPair:
         return np.array([1, -1 if self.pair.internal else 1])
 
     @property
-    def base_pitch_m(self) -> float:
-        """Pitch along the line of action."""
-        return math.pi * self.module_m * math.cos(self.pair.pressure_angle_rad)
-
-    @property
     def pitch_radii_m(self) -> Array:
         """Radii of the pitch circles of generation."""
         return 0.5 * self.module_m * np.array(self.pair.teeth)
@@ -151,9 +146,10 @@ class TeethPair:
     @property
     def contact_ratio(self) -> float:
         """Transverse contact ratio: path of contact over the base pitch. Shigley, eq. 13-8."""
+        base_pitch_m = math.pi * self.module_m * math.cos(self.pair.pressure_angle_rad)
         first, second = np.sqrt(np.maximum(self.tip_radii_m**2 - self.base_radii_m**2, 0.0))
         # External: e0 + e1 - a sin; internal: e0 - e1 + a sin (KHK, Gear Technical Reference, 4.2).
-        return float(first + self._signs[1] * (second - self._line_m)) / self.base_pitch_m
+        return float(first + self._signs[1] * (second - self._line_m)) / base_pitch_m
 
     @property
     def interferes(self) -> bool:

@@ -141,15 +141,11 @@ def _rank(gears: Iterable[Gear], bodies: Collection[str]) -> int:
 @dataclass(frozen=True)
 class ElementaryTrain:
     """Gears that mesh on one ``carrier``; ``values``, by gear, are their speeds against it over
-    that of the first, and ``gears`` the names of the pairs."""
+    that of the first, basic ratios, and ``gears`` the names of the pairs."""
 
     carrier: str
     values: Mapping[str, Fraction]
     gears: tuple[str, ...]
-
-    def value(self, body: str, other: str) -> Fraction:
-        """Return the basic ratio of two of its gears: i above, the carrier at rest."""
-        return self.values[body] / self.values[other]
 
 
 def elementary_trains(gears: Iterable[Gear]) -> list[ElementaryTrain]:

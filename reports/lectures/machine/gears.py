@@ -172,7 +172,7 @@ def _pairs(scene: Scene, shift: Sequence[str]) -> list[TeethPair]:
 def _basic_ratio(train: ElementaryTrain) -> tuple[object, ...]:
     """Return the ratio of the last gear to the first, with the carrier at rest."""
     first, *_, last = train.values
-    return train.carrier, list(train.gears), str(train.value(last, first)), last, first
+    return train.carrier, list(train.gears), str(train.values[last]), last, first
 
 
 def _teeth(pair: TeethPair) -> Rows:
