@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.cams.profile import CamContact, largest, touch, turn_of
+from analytic.cams.profile import corners, largest, touch, turn_of
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.cams import Cam, OscillatingFollower
@@ -72,7 +72,7 @@ class LiftOff(NamedTuple):
 def contact_force(cam: Cam, load: FollowerLoad, omega_rad_s: float, phi: Array) -> CamForces:
     """Return contact force and driving torque at a constant speed. Raises CrankcheckError as
     `touch`."""
-    contact: CamContact = touch(cam, phi)
+    contact = touch(cam, phi)
     s, first, second, _ = contact.lift
     pressing = load.inertia * omega_rad_s**2 * second + load.closing(cam, s)
     return CamForces(pressing / contact.lever, cam.sense * pressing * first)
@@ -90,9 +90,8 @@ def lift_off(cam: Cam, load: FollowerLoad) -> LiftOff:
             f"{math.degrees(where):.6g} deg of the cam, at rest; give a preload above "
             f"{load.preload + least:.6g}"
         )
-    drops = [one for one in cam.law.jumps if one.velocity < 0.0]
-    if drops and load.inertia > 0.0:  # an impulse that nothing withstands
-        return LiftOff(0.0, drops[0].angle_rad)
+    if load.inertia > 0.0 and (drops := corners(cam.law)):  # an impulse that nothing withstands
+        return LiftOff(0.0, drops[0])
 
     def lack(phi: Array) -> Array:
         lift = cam.law.at(phi)

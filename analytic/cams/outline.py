@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.cams.base_circle import refuse_undercut
+from analytic.cams.cam_design import refuse_undercut
 from analytic.cams.profile import CamContact, Plane, touch
 from models.errors import CrankcheckError
 from models.scene import Scene

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.scene.cam_laws import CamLift
+from models.scene.cam_laws import CamLaw, CamLift
 from models.scene.cams import Cam, OscillatingFollower
 
 Plane = NDArray[np.complex128]
@@ -105,28 +105,24 @@ def _touch_tip(cam: Cam, phi: Array, lift: CamLift) -> CamContact:
 
 def _touch_face(cam: Cam, phi: Array, lift: CamLift) -> CamContact:
     """Contact of a flat face, by the derivatives of its support function h(beta)."""
-    follower, sense = cam.follower, cam.sense
-    s, (_, first, second, _) = cam.start + lift.value, lift
-    if not isinstance(follower, OscillatingFollower):
-        # beta = pi/2 - sigma phi: dh/dbeta = -sigma s', and the same again.
-        normal, flat = np.full(s.shape, 1j), np.zeros_like(s)
-        contact, radius = normal * (s - 1j * sense * first), s + second
-        return CamContact(
-            phi, sense, lift, contact, normal, None, flat, radius, radius, np.ones_like(s)
-        )
-    d, f = follower.pivot_m, follower.face_m
-    turn = 1.0 + sense * first  # rate of the face against the cam, beta' = -sigma turn
-    if turn.min() <= 0.0:
-        raise CrankcheckError(
-            f"the flat face turns by {abs(first).max():.6g} of the cam's speed, with it: the "
-            "contact runs to infinity at 1; give the motion a longer span"
-        )
-    normal = 1j * np.exp(-1j * s)
-    lever = d * np.cos(s) / turn  # from the pivot's foot on the face to the contact
-    contact = d + f * normal + 1j * normal * lever
-    radius = f + d * np.sin(s) * (1.0 + 2.0 * sense * first) / turn**2
-    radius += d * np.cos(s) * second / turn**3
-    pressure = np.arctan2(f, lever)
+    follower, sense, s = cam.follower, cam.sense, cam.start + lift.value
+    h, first, second = s, lift.first, lift.second
+    normal, pressure, lever = np.full(s.shape, 1j), np.zeros_like(s), np.ones_like(s)
+    turn, faster = lever, pressure  # beta' = -sigma turn: rate of the face against the cam
+    if isinstance(follower, OscillatingFollower):
+        d, f = follower.pivot_m, follower.face_m
+        turn, faster = 1.0 + sense * lift.first, sense * lift.second
+        if turn.min() <= 0.0:
+            raise CrankcheckError(
+                f"the flat face turns by {abs(first).max():.6g} of the cam's speed, with it: the "
+                "contact runs to infinity at 1; give the motion a longer span"
+            )
+        h, first = d * np.sin(s) + f, d * np.cos(s) * lift.first
+        second = d * (np.cos(s) * lift.second - np.sin(s) * lift.first**2)
+        lever = d * np.cos(s) / turn  # from the pivot's foot on the face to the contact
+        normal, pressure = 1j * np.exp(-1j * s), np.arctan2(f, lever)
+    contact = normal * (h - 1j * sense * first / turn)
+    radius = h + second / turn**2 - first * faster / turn**3
     return CamContact(phi, sense, lift, contact, normal, None, pressure, radius, radius, lever)
 
 
@@ -180,3 +176,9 @@ def largest(knots: Sequence[float], quantity: Callable[[Array], Array]) -> tuple
 def turn_of(cam: Cam) -> tuple[float, ...]:
     """Return the knots of its law over one turn, both ends with them [rad]."""
     return (*cam.law.knots_rad, math.tau)
+
+
+def corners(law: CamLaw, sign: int = 1) -> list[float]:
+    """Return the angles [rad] of the corners of a profile: where the velocity of its law drops, or,
+    with ``sign`` -1, grows, and the corner is concave."""
+    return [one.angle_rad for one in law.jumps if sign * one.velocity < 0.0]

@@ -14,84 +14,63 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import combinations
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.scene.pairs import Gear, Points
 
 WHOLE = 1e-6
 """Difference from a whole number that the places of planets may make, in teeth."""
-MOST_PLANETS = 30
-"""Largest number of planets that is tried."""
+LISTED = 30
+"""Numbers that a message lists."""
+Teeth = tuple[int, int]
+"""Teeth of a planet and of the central gear that it meshes with, negative of a ring."""
 
 
 @dataclass(frozen=True)
 class PlanetStage:
-    """A planet between the central gears of the pairs ``first`` and ``second`` on one carrier; it
-    stands at ``angle_rad`` and ``distance_m`` from their centre, and its largest gear has the
-    ``tip_m`` radius of its addendum circle (0 without a module)."""
+    """A planet on a carrier between two central gears, ``teeth`` by mesh, at ``angle_rad`` from
+    their centre. ``kind`` is what equal planets have in common; ``most`` of them, evenly spread,
+    clear each other's addendum circles."""
 
     planet: str
-    first: Gear
-    second: Gear
-    angle_rad: float = 0.0
-    distance_m: float = 0.0
-    tip_m: float = 0.0
+    kind: tuple[object, ...]
+    teeth: tuple[Teeth, Teeth]
+    angle_rad: float
+    most: int
 
     @property
     def period(self) -> int:
         """Places on the carrier where a planet fits, evenly spread; 0: everywhere."""
-        (p, a), (q, b) = (_from_planet(gear, self.planet) for gear in (self.first, self.second))
+        (p, a), (q, b) = self.teeth
         return abs(q * a - p * b) // math.gcd(p, q)
 
     @property
-    def kind(self) -> tuple[object, ...]:
-        """What equal planets have in common: carrier, central gears and teeth."""
-        sides = [(_other(g, self.planet), _from_planet(g, self.planet))
-                 for g in (self.first, self.second)]  # fmt: skip
-        return self.first.carrier, *sides
-
-    def clearance_m(self, count: int) -> float:
-        """Return the gap between the addendum circles of neighbours, ``count`` planets evenly
-        spread; negative where they overlap."""
-        return 2.0 * (self.distance_m * math.sin(math.pi / count) - self.tip_m)
-
     def counts(self) -> list[int]:
         """Numbers of equal planets, evenly spread, that fit and clear each other."""
-        fitting = (n for n in range(1, MOST_PLANETS + 1) if self.period % n == 0)
-        return [n for n in fitting if n == 1 or self.clearance_m(n) > 0.0 or not self.tip_m]
+        return [n for n in range(1, self.most + 1) if self.period % n == 0]
 
     def check(self, count: int) -> None:
         """Raise CrankcheckError if so many equal planets do not fit, or touch each other."""
-        works = ", ".join(map(str, self.counts()))
+        if count in self.counts:
+            return
+        fault = f"overlap: {self.most} have room beside each other"
         if count < 1 or self.period % count:
-            raise CrankcheckError(
-                f"{count} equal planets like {self.planet} can not be assembled: "
-                f"{self._sum()}/{count} = {self.period / max(count, 1):.6g} has to be a whole "
-                f"number; numbers that work: {works}"
+            places = self.period / max(count, 1)
+            fault = (
+                f"can not be assembled: {self.sum}/{count} = {places:.6g} has to be a whole number"
             )
-        if count > 1 and self.tip_m and self.clearance_m(count) <= 0.0:
-            raise CrankcheckError(
-                f"{count} planets like {self.planet} overlap: addendum circles of "
-                f"{2e3 * self.tip_m:.6g} mm stand "
-                f"{2e3 * self.distance_m * math.sin(math.pi / count):.6g} mm apart; numbers that "
-                f"work: {works}"
-            )
+        raise CrankcheckError(f"{count} equal planets like {self.planet} {fault}; {self.works}")
 
-    def check_beside(self, other: PlanetStage) -> None:
-        """Raise CrankcheckError if an equal planet does not fit where it stands beside this."""
-        places = self.period * (other.angle_rad - self.angle_rad) / math.tau
-        if abs(places - round(places)) > WHOLE * max(self.period, 1):
-            step = 360.0 / self.period
-            raise CrankcheckError(
-                f"{other.planet} can not be assembled where it is: "
-                f"{math.degrees(other.angle_rad - self.angle_rad) % 360.0:.6g} degrees from "
-                f"{self.planet}, equal planets fit each {step:.6g} degrees ({self._sum()} = "
-                f"{self.period} places); evenly spread, numbers that work: "
-                f"{', '.join(map(str, self.counts()))}"
-            )
+    @property
+    def works(self) -> str:
+        """The numbers that work, in words."""
+        return f"numbers that work: {few(map(str, self.counts), LISTED)}"
 
-    def _sum(self) -> str:
-        (p, a), (q, b) = (_from_planet(gear, self.planet) for gear in (self.first, self.second))
+    @property
+    def sum(self) -> str:
+        """The sum of teeth that gives the places, in words."""
+        (p, a), (q, b) = self.teeth
         if p == q:
             return f"({abs(a)} {'+' if a * b < 0 else '-'} {abs(b)})"
         return f"({q} x {a} - {p} x {b})/{math.gcd(p, q)}".replace("- -", "+ ").replace("x -", "x ")
@@ -101,43 +80,38 @@ def planet_stages(gears: Iterable[Gear], points: Mapping[str, Points]) -> list[P
     """Find the planets of a train that mesh with two central gears of one axis; ``points`` are
     those of all bodies (`models.scene.Scene.points_of`). Planets that mesh with planets are left
     out. Raises ValueError as `Gear.pivots`."""
-    sides = [
-        (gear, gear.pivots(points)[n], gear.pivots(points)[1 - n], gear.bodies[n])
-        for gear in gears
-        for n in (0, 1)
-    ]
-    found = []
-    for k, (first, own, centre, planet) in enumerate(sides):
-        for second, other, same, body in sides[k + 1 :]:
-            meets = (own, centre, planet, first.carrier) == (other, same, body, second.carrier)
-            if meets and own != centre and first is not second:
-                at, middle = (points[first.carrier][point] for point in (own, centre))
-                away = (at[0] - middle[0], at[1] - middle[1])
-                tip = max(_tip_m(gear, planet, points) for gear in (first, second))
-                found.append(
-                    PlanetStage(planet, first, second, math.atan2(away[1], away[0]),
-                                math.hypot(*away), tip)
-                )  # fmt: skip
-    return found
+    meshes: dict[tuple[str, ...], list[tuple[str, Teeth, float]]] = {}
+    for gear in gears:
+        sign, (one, other), pivots = -1 if gear.internal else 1, gear.teeth, gear.pivots(points)
+        distance = gear.distance_m(points)
+        for n, teeth in enumerate(((one, sign * other), (other, sign * one))):
+            if distance > 0.0:
+                place = gear.bodies[n], gear.carrier, pivots[n], pivots[1 - n]
+                share = 0.5 * (gear.module(points) or 0.0) * (teeth[0] + 2) / distance
+                meshes.setdefault(place, []).append((gear.bodies[1 - n], teeth, share))
+    stages = []
+    for (planet, carrier, own, centre), its in meshes.items():
+        (x, y), (ox, oy) = points[carrier][own], points[carrier][centre]
+        for (sun, teeth, tip), (ring, others, second_tip) in combinations(its, 2):
+            # Of n planets neighbours are 2 a sin(pi / n) apart, and their tips reach a share of a.
+            share = max(tip, second_tip)
+            most = math.ceil(math.pi / math.asin(share)) - 1 if share < 1.0 else 1
+            both, angle = (teeth, others), math.atan2(y - oy, x - ox)
+            stages.append(PlanetStage(planet, (carrier, sun, ring, both), both, angle, most))
+    return stages
 
 
 def check_planets(stages: Iterable[PlanetStage]) -> None:
     """Raise CrankcheckError for planets that do not fit beside the first of their kind."""
-    first: dict[tuple[object, ...], PlanetStage] = {}
+    firsts: dict[tuple[object, ...], PlanetStage] = {}
     for stage in stages:
-        first.setdefault(stage.kind, stage).check_beside(stage)
-
-
-def _other(gear: Gear, planet: str) -> str:
-    return next(body for body in gear.bodies if body != planet)
-
-
-def _from_planet(gear: Gear, planet: str) -> tuple[int, int]:
-    """Teeth of the planet, and of the central gear, negative where one of them is a ring."""
-    own = gear.bodies.index(planet)
-    return gear.teeth[own], gear.teeth[1 - own] * (-1 if gear.internal else 1)
-
-
-def _tip_m(gear: Gear, planet: str, points: Mapping[str, Points]) -> float:
-    module = gear.module(points) or 0.0
-    return 0.5 * module * (gear.teeth[gear.bodies.index(planet)] + 2)
+        first = firsts.setdefault(stage.kind, stage)
+        turned, period = stage.angle_rad - first.angle_rad, first.period
+        places = period * turned / math.tau
+        if abs(places - round(places)) > WHOLE * max(period, 1):
+            raise CrankcheckError(
+                f"{stage.planet} can not be assembled where it is: "
+                f"{math.degrees(turned) % 360.0:.6g} degrees from {first.planet}, equal planets "
+                f"fit each {360.0 / period:.6g} degrees ({first.sum} = {period} places); evenly "
+                f"spread, {first.works}"
+            )

@@ -18,6 +18,9 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
+from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.pairs import FITS, Gear
 
@@ -58,8 +61,8 @@ class TeethPair:
     """Teeth of two gears in mesh. ``pair`` has teeth and kind, ``module_m`` is that of the rack,
     ``shifts`` the profile shifts in modules (of a ring positive where its teeth move outwards).
 
-    All tuples have a value per gear, lengths in m. Raises CrankcheckError for shifts that no centre
-    distance goes with.
+    Arrays (2,) have a value per gear, lengths are in m. Raises CrankcheckError for shifts that no
+    centre distance goes with.
     """
 
     pair: Gear
@@ -75,65 +78,47 @@ class TeethPair:
             )
 
     @property
-    def _signs(self) -> tuple[int, int]:
-        return 1, -1 if self.pair.internal else 1
+    def _signs(self) -> Array:
+        return np.array([1, -1 if self.pair.internal else 1])
 
     @property
-    def pitch_m(self) -> float:
-        """Pitch along the pitch circle."""
-        return math.pi * self.module_m
-
-    @property
-    def base_pitch_m(self) -> float:
-        """Pitch along the line of action."""
-        return self.pitch_m * math.cos(self.pair.pressure_angle_rad)
-
-    @property
-    def pitch_radii_m(self) -> tuple[float, float]:
+    def pitch_radii_m(self) -> Array:
         """Radii of the pitch circles of generation."""
-        first, second = self.pair.teeth
-        return 0.5 * self.module_m * first, 0.5 * self.module_m * second
+        return 0.5 * self.module_m * np.array(self.pair.teeth)
 
     @property
-    def base_radii_m(self) -> tuple[float, float]:
+    def base_radii_m(self) -> Array:
         """Radii of the base circles."""
-        c = math.cos(self.pair.pressure_angle_rad)
-        return self.pitch_radii_m[0] * c, self.pitch_radii_m[1] * c
+        return self.pitch_radii_m * math.cos(self.pair.pressure_angle_rad)
 
-    def _from_pitch(self, height: float) -> tuple[float, float]:
-        radii = zip(self.pitch_radii_m, self.shifts, self._signs, strict=True)
-        first, second = (r + (x + s * height) * self.module_m for r, x, s in radii)
-        return first, second
+    def _from_pitch(self, height: float) -> Array:
+        return self.pitch_radii_m + (self.shifts + self._signs * height) * self.module_m
 
     @property
-    def tip_radii_m(self) -> tuple[float, float]:
+    def tip_radii_m(self) -> Array:
         """Radii of the addendum circles. The tip of a ring is shortened where it would reach the
         pinion below its base circle, as usual."""
-        first, second = self._from_pitch(ADDENDUM)
+        radii = self._from_pitch(ADDENDUM)
         if self.pair.internal:
-            second = max(second, math.hypot(self.base_radii_m[1], self._line_m))
-        return first, second
+            radii[1] = max(radii[1], self._ends_m[1])
+        return radii
 
     @property
-    def root_radii_m(self) -> tuple[float, float]:
+    def root_radii_m(self) -> Array:
         """Radii of the dedendum circles."""
         return self._from_pitch(-DEDENDUM)
 
     @property
-    def thicknesses_m(self) -> tuple[float, float]:
+    def thicknesses_m(self) -> Array:
         """Tooth thicknesses on the pitch circles, as arcs; of a ring that of its tooth."""
         lean = 2.0 * math.tan(self.pair.pressure_angle_rad)
-        first, second = (
-            (math.pi / 2.0 + s * x * lean) * self.module_m
-            for x, s in zip(self.shifts, self._signs, strict=True)
-        )
-        return first, second
+        return (math.pi / 2.0 + self._signs * self.shifts * lean) * self.module_m
 
     @property
     def _working_involute(self) -> float:
         """Involute of the working pressure angle: inv a + 2 tan a (x0 + x1)/(z0 + z1)."""
-        angle, s = self.pair.pressure_angle_rad, self._signs[1]
-        shifted = (self.shifts[0] + s * self.shifts[1]) / (self.pair.teeth[0] + self.pair.second)
+        angle, signs = self.pair.pressure_angle_rad, self._signs
+        shifted = float(signs @ self.shifts) / (self.pair.teeth[0] + self.pair.second)
         return involute(angle) + 2.0 * math.tan(angle) * shifted
 
     @cached_property
@@ -146,8 +131,7 @@ class TeethPair:
     @property
     def distance_m(self) -> float:
         """Centre distance without backlash."""
-        first, second = self.base_radii_m
-        return abs(first + self._signs[1] * second) / math.cos(self.working_angle_rad)
+        return abs(float(self._signs @ self.base_radii_m)) / math.cos(self.working_angle_rad)
 
     @property
     def _line_m(self) -> float:
@@ -155,57 +139,45 @@ class TeethPair:
         return self.distance_m * math.sin(self.working_angle_rad)
 
     @property
+    def _ends_m(self) -> Array:
+        """Radii at which the line of action ends, on the base circle of the other gear."""
+        return np.hypot(self.base_radii_m, self._line_m)
+
+    @property
     def contact_ratio(self) -> float:
         """Transverse contact ratio: path of contact over the base pitch. Shigley, eq. 13-8."""
-        ends = [
-            math.sqrt(max(ra * ra - rb * rb, 0.0))
-            for ra, rb in zip(self.tip_radii_m, self.base_radii_m, strict=True)
-        ]
+        base_pitch_m = math.pi * self.module_m * math.cos(self.pair.pressure_angle_rad)
+        first, second = np.sqrt(np.maximum(self.tip_radii_m**2 - self.base_radii_m**2, 0.0))
         # External: e0 + e1 - a sin; internal: e0 - e1 + a sin (KHK, Gear Technical Reference, 4.2).
-        return (ends[0] + self._signs[1] * (ends[1] - self._line_m)) / self.base_pitch_m
+        return float(first + self._signs[1] * (second - self._line_m)) / base_pitch_m
 
     @property
-    def interferes(self) -> tuple[bool, bool]:
-        """True by gear whose tip reaches the flank of the other below its base circle, beyond the
-        end of the line of action (Shigley, 13-7); never of a ring, whose tip is shortened."""
-        if self.pair.internal:
-            return False, False
-        limits = [math.hypot(base, self._line_m) for base in self.base_radii_m]
-        return self.tip_radii_m[0] > limits[0], self.tip_radii_m[1] > limits[1]
-
-    @property
-    def tips_collide(self) -> bool:
-        """True if tips of a pinion run into those of its ring outside the contact (trochoidal
-        interference: too few teeth less). Source: KHK, Gear Technical Reference, 4.2."""
+    def interferes(self) -> bool:
+        """Whether tips run into the other gear: below its base circle, beyond the end of the line
+        of action (Shigley, 13-7), or, of a pinion, into those of its ring outside the contact
+        (trochoidal interference: too few teeth less; KHK, Gear Technical Reference, 4.2)."""
         if not self.pair.internal:
-            return False
+            return bool((self.tip_radii_m > self._ends_m).any())
         (r0, r1), a = self.tip_radii_m, self.distance_m
         if r1 >= r0 + a:  # the circles of the tips do not cross
             return False
         cosines = (r1**2 - r0**2 - a**2) / (2.0 * a * r0), (a**2 + r1**2 - r0**2) / (2.0 * a * r1)
         if max(map(abs, cosines)) > 1.0:
             return True
-        own, other = (
-            involute(math.acos(min(base / tip, 1.0)))
-            for base, tip in zip(self.base_radii_m, self.tip_radii_m, strict=True)
-        )
+        shares = np.minimum(self.base_radii_m / self.tip_radii_m, 1.0)
+        own, other = (involute(math.acos(share)) for share in shares)
         inv, ratio = involute(self.working_angle_rad), self.pair.teeth[0] / self.pair.teeth[1]
         first = math.acos(cosines[0]) + own - inv
-        return first * ratio + inv - other < math.acos(cosines[1])
+        return bool(first * ratio + inv - other < math.acos(cosines[1]))
 
     def check(self, distance_m: float | None = None) -> None:
         """Raise CrankcheckError for teeth that undercut, interfere, lose contact, or do not mesh at
         a centre distance."""
-        if faults := list(self._faults(distance_m)):
-            raise CrankcheckError(f"gears.{self.pair.name}: {'; '.join(faults)}")
-
-    def _faults(self, distance_m: float | None) -> list[str]:
         faults, angle, found = [], self.pair.pressure_angle_rad, self.distance_m
         at = f"{math.degrees(angle):g} degrees"
-        for body, z, x, s in zip(
-            self.pair.bodies, self.pair.teeth, self.shifts, self._signs, strict=True
-        ):
-            if s > 0 and x < least_shift(z, angle):
+        own = zip(self.pair.bodies, self.pair.teeth, self.shifts, self._signs, strict=True)
+        for body, z, x, sign in own:
+            if sign > 0 and x < least_shift(z, angle):
                 faults.append(
                     f"{z} teeth of {body} undercut at {at}; {math.ceil(least_teeth(angle, x))} or "
                     f"more do not, or a profile shift of {least_shift(z, angle):.4f} or more"
@@ -217,7 +189,7 @@ class TeethPair:
             )
         if self.contact_ratio < 1.0:
             faults.append(f"contact ratio {self.contact_ratio:.3g}; teeth in mesh need 1 or more")
-        if any(self.interferes) or self.tips_collide:
+        if self.interferes:
             less = self.pair.teeth[1] - self.pair.teeth[0]
             faults.append(
                 f"tips of the ring ({less} teeth more) run into the pinion; use more teeth in both "
@@ -226,4 +198,5 @@ class TeethPair:
                 else "tips reach below the base circle of the other gear; use more teeth in the "
                 "smaller gear, or shift its profile outwards"
             )
-        return faults
+        if faults:
+            raise CrankcheckError(f"gears.{self.pair.name}: {'; '.join(faults)}")

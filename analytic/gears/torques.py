@@ -34,12 +34,14 @@ NOTHING = 1e-12
 @dataclass(frozen=True)
 class MeshLoad:
     """Torques of a mesh on its gears and its carrier, ``on_n_m`` by body, and its powers seen from
-    the carrier: ``rolling_w`` goes from the driving gear into the teeth, ``loss_w`` stays there."""
+    the carrier: ``rolling_w`` goes from the driving gear into the teeth, ``loss_w`` stays there.
+    It ``drives`` by its first gear (1) or its second (-1)."""
 
     gear: Gear
     on_n_m: Mapping[str, float]
     rolling_w: float
     loss_w: float
+    drives: int
 
     def tangential_n(self, module_m: float) -> float:
         """Return the tangential force between the teeth at the working pitch circles [N], that on
@@ -67,11 +69,6 @@ class TrainTorques:
         return sum(power for power in self.powers_w.values() if power > 0.0)
 
     @property
-    def loss_w(self) -> float:
-        """Power that is lost in all meshes."""
-        return sum(mesh.loss_w for mesh in self.meshes)
-
-    @property
     def efficiency(self) -> float | None:
         """Power out over power in; None where nothing goes in."""
         out = -sum(power for power in self.powers_w.values() if power < 0.0)
@@ -92,22 +89,12 @@ class TrainTorques:
 def torques(train: Train, inputs: Mapping[str, float], loads: Mapping[str, float]) -> TrainTorques:
     """Find the torques on all members in steady motion; those of the inputs close the balance.
 
-    Parameters
-    ----------
-    inputs : mapping
-        Speeds of independent bodies [rad/s], as many as the mobility.
-    loads : mapping
-        Known torques from outside [N m], counter-clockwise positive; others are 0.
+    ``inputs`` are speeds of independent bodies [rad/s], as many as the mobility, and ``loads`` the
+    known torques from outside [N m], counter-clockwise positive; others are 0. Equal planets share
+    a load evenly: the least sum of squares among all loads in balance.
 
-    Raises
-    ------
-    CrankcheckError
-        Inputs that depend on each other or leave some open (`Train.influence`); a load on an input,
-        or on a body that the train lacks; a self-locking train.
-
-    Notes
-    -----
-    Equal planets share a load evenly: the least sum of squares among all loads in balance.
+    Raises CrankcheckError for inputs as `Train.influence`, a load on an input or on a body that the
+    train lacks, and a self-locking train.
     """
     closing, speeds = tuple(inputs), train.speeds(inputs)
     for body in loads:
@@ -165,7 +152,7 @@ def _balanced(
     for gear, row, load in zip(train.gears, rows, size.tolist(), strict=True):
         on = {body: load * c for body, c in row.items()}
         into = [-on[body] * (speeds[body] - speeds[gear.carrier]) for body in gear.bodies]
-        meshes.append(MeshLoad(gear, on, max(into), sum(into)))
+        meshes.append(MeshLoad(gear, on, max(into), sum(into), 1 if into[0] > 0.0 else -1))
     return TrainTorques(speeds, outside, tuple(meshes))
 
 
@@ -177,10 +164,7 @@ def _coefficients(gear: Gear, drives: int) -> Mapping[str, float]:
 def _driving(found: TrainTorques, way: tuple[int, ...]) -> tuple[int, ...]:
     """Return who drives by the loads found; a mesh without power keeps its choice."""
     nothing = NOTHING * max(mesh.rolling_w for mesh in found.meshes)
-    drawn = []
-    for mesh, drives in zip(found.meshes, way, strict=True):
-        first, carrier = mesh.gear.bodies[0], mesh.gear.carrier
-        drift = found.speeds_rad_s[first] - found.speeds_rad_s[carrier]
-        into = -mesh.on_n_m[first] * drift
-        drawn.append(drives if abs(into) <= nothing or not drives else 1 if into > 0.0 else -1)
-    return tuple(drawn)
+    return tuple(
+        mesh.drives if drives and mesh.rolling_w > nothing else drives
+        for mesh, drives in zip(found.meshes, way, strict=True)
+    )

@@ -72,7 +72,9 @@ class Train:
         """
         for body in inputs:
             if body not in self.bodies:
-                raise CrankcheckError(f"{body}: no body of the train; use {self._listed()}")
+                raise CrankcheckError(
+                    f"{body}: no body of the train; use {few(self.bodies, LISTED)}"
+                )
         others = [body for body in self.bodies if body not in inputs]
         rows, pivots = reduced(_rows(self.gears, (*others, *inputs)))
         if pivots and pivots[-1] >= len(others):
@@ -91,10 +93,9 @@ class Train:
                 f"{self.mobility}, and they leave {few(hidden, LISTED)} open; give "
                 f"{self.mobility - len(inputs)} more"
             )
-        own = {body: tuple(-x for x in rows[n][len(others) :]) for n, body in enumerate(others)}
-        unit = {
-            body: tuple(Fraction(body == other) for other in inputs) for body in (GROUND, *inputs)
-        }
+        unit = {body: tuple(Fraction(body == one) for one in inputs) for body in (GROUND, *inputs)}
+        solved = zip(others, rows, strict=True)
+        own = {body: tuple(-x for x in row[len(others) :]) for body, row in solved}
         return {body: (own | unit)[body] for body in (GROUND, *self.bodies)}
 
     def speeds(self, inputs: Mapping[str, float]) -> dict[str, float]:
@@ -107,33 +108,26 @@ class Train:
             for body, row in coefficients.items()
         }
 
-    def _locked(self) -> list[Gear]:
-        """Return pairs that lock each other, as few as do: without any one of them they move.
-
-        A pair is locked where every motion of the train, the ground free to turn too, turns it as
-        one body: then its gear's speed less its carrier's is a combination of the rows.
-        """
-        for gear in self.gears:
-            one = next(body for body in gear.bodies if body != gear.carrier)
-            if _locks(self.gears, one, gear.carrier):
-                least = list(self.gears)
-                for other in self.gears:
-                    without = [each for each in least if each is not other]
-                    if _locks(without, one, gear.carrier):
-                        least = without
-                return least
-        return []
-
-    def _listed(self) -> str:
-        return few(self.bodies, LISTED)
+    def _locked(self) -> Sequence[Gear]:
+        """Return pairs that lock each other, as few as do: without any one of them they move."""
+        least = self.gears if _lock(self.gears) else ()
+        for gear in least:
+            without = tuple(each for each in least if each is not gear)
+            least = without if _lock(without) else least
+        return least
 
 
-def _locks(gears: Sequence[Gear], first: str, second: str) -> bool:
-    """True if the relations of the pairs leave two bodies no other motion than as one."""
-    bodies = tuple(dict.fromkeys((first, second, *(b for g in gears for b in g.relation))))
-    apart = [Fraction((body == first) - (body == second)) for body in bodies]
-    rows = _rows(gears, bodies)
-    return len(reduced([*rows, apart])[1]) == len(reduced(rows)[1])
+def _lock(gears: Sequence[Gear]) -> bool:
+    """True if every motion, the ground free to turn too, turns one of the pairs as one body: then
+    its gear's speed less its carrier's is a combination of the rows."""
+    bodies = {body: None for gear in gears for body in gear.relation}
+    rows, rank = _rows(gears, bodies), _rank(gears, bodies)
+    for gear in gears:
+        one = next(body for body in gear.bodies if body != gear.carrier)
+        apart = [Fraction((body == one) - (body == gear.carrier)) for body in bodies]
+        if len(reduced([*rows, apart])[1]) == rank:
+            return True
+    return False
 
 
 def _rows(gears: Iterable[Gear], bodies: Collection[str]) -> list[list[Fraction]]:
@@ -147,15 +141,11 @@ def _rank(gears: Iterable[Gear], bodies: Collection[str]) -> int:
 @dataclass(frozen=True)
 class ElementaryTrain:
     """Gears that mesh on one ``carrier``; ``values``, by gear, are their speeds against it over
-    that of the first, and ``gears`` the names of the pairs."""
+    that of the first, basic ratios, and ``gears`` the names of the pairs."""
 
     carrier: str
     values: Mapping[str, Fraction]
     gears: tuple[str, ...]
-
-    def value(self, body: str, other: str) -> Fraction:
-        """Return the basic ratio of two of its gears: i above, the carrier at rest."""
-        return self.values[body] / self.values[other]
 
 
 def elementary_trains(gears: Iterable[Gear]) -> list[ElementaryTrain]:

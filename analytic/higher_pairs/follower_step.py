@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.cams.base_circle import refuse_undercut
+from analytic.cams.cam_design import refuse_undercut
 from analytic.cams.profile import turn_of
 from analytic.dyads.chunk import SINES, Chunk
 from analytic.dyads.parts import SlideError, Sliding
@@ -54,13 +54,13 @@ class FollowerStep:
         rate = lift.first * omega
         second = lift.second * omega**2 + lift.first * alpha
         error = self._error(cam, carrier, lift, place) if chunk.certified else None
+        found = Sliding(place, rate, second, error)
         if self.riding is not None:
-            found = Sliding(place, rate, second, error)
             point = riding_point(self.riding.line(chunk), found)
             follower = self.riding.follower(chunk, self.riding.rider, point)
             chunk.sliders[self.pair.slider] = found
         else:
-            follower = self._turned(chunk, carrier, Sliding(place, rate, second, error))
+            follower = self._turned(chunk, carrier, found)
         chunk.bodies[self.part.body] = follower
         chunk.sines[self.key] = np.ones_like(chunk.theta)
 

@@ -16,7 +16,7 @@ Source: R. Willis' formula, e.g. Norton, Design of Machinery, section 9.9.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -66,8 +66,8 @@ class GearGroup:
         return sum(float(r) * g.constant_rad for r, g in zip(row, self.gears, strict=True))
 
 
-def gear_groups(gears: Sequence[Gear], hanging: Hanging) -> Iterator[GearGroup]:
-    """Yield the groups of gears that can be placed next.
+def gear_group(gears: Sequence[Gear], hanging: Hanging) -> GearGroup | None:
+    """Return the group of gears that can be placed next; None if there is none.
 
     The relations of all open gears are reduced to the angles that known ones determine; those that
     share gears are placed together.
@@ -84,20 +84,19 @@ def gear_groups(gears: Sequence[Gear], hanging: Hanging) -> Iterator[GearGroup]:
         if pivot < len(bodies) and sum(map(bool, row[: len(bodies)])) == 1:
             own = zip(left, row[len(bodies) :], strict=True)
             shares[bodies[pivot]] = {gear.name: share for gear, share in own if share}
-    while shares:
-        body, used = next(iter(shares.items()))
+    for body, used in shares.items():
         group, names = {body}, set(used)
         while more := {b for b in shares.keys() - group if names & shares[b].keys()}:
             group |= more
             names |= {name for b in more for name in shares[b]}
-        own_shares = {b: shares.pop(b) for b in [*shares] if b in group}
         chosen = tuple(gear for gear in left if gear.name in names)
-        placing = _placing(list(own_shares), hanging)
+        placing = _placing([b for b in shares if b in group], hanging)
         if len(chosen) == len(group) and placing is not None:
             inverse = tuple(
-                tuple(own_shares[b].get(gear.name, Fraction(0)) for gear in chosen) for b in placing
+                tuple(shares[b].get(gear.name, Fraction(0)) for gear in chosen) for b in placing
             )
-            yield GearGroup(tuple(placing), tuple(placing.values()), chosen, inverse)
+            return GearGroup(tuple(placing), tuple(placing.values()), chosen, inverse)
+    return None
 
 
 def _unknown(gear: Gear, hanging: Mapping[str, object]) -> list[str]:

@@ -15,7 +15,7 @@ r"""Assur groups and redundant links of a mechanism, in solving order.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from analytic.structure.gear_groups import GearGroup, Hanging, gear_groups
+from analytic.structure.gear_groups import GearGroup, Hanging, gear_group
 from models.scene import Scene
 from models.scene.pairs import CamPair, Gear
 
@@ -185,7 +185,7 @@ def decompose(
     outer = {body: pairs.outer(body, placed) for body in bodies if body not in placed}
     order: list[Part] = []
     while (
-        part := (next(gear_groups(gears, pairs.hanging(outer)), None) if gears else None)
+        part := (gear_group(gears, pairs.hanging(outer)) if gears else None)
         or next(_followers(cams, outer, placed), None)
         or next(_dyads(outer, placed, pairs), None)
         or next(_triads(outer, placed, pairs), None)

@@ -1,7 +1,7 @@
 """Curves of gears and cams on a drawn mechanism: pitch circles, profiles, rollers and faces."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,16 +60,16 @@ def places_of(scene: Scene, motion: Motion) -> Array:
     return np.concatenate([*points, *(each.reshape(-1, 2) for each in curves)])
 
 
-def _gears(scene: Scene) -> Iterator[BodyCurves]:
-    """Yield wheels and rings, each once; two gears about one centre have no pitch circles."""
-    at, drawn = scene.points_of, set()
+def _gears(scene: Scene) -> Iterable[BodyCurves]:
+    """Return wheels and rings, each once; two gears about one centre have no pitch circles."""
+    at, wheels = scene.points_of, dict[tuple[object, ...], BodyCurves]()
     for gear in scene.gears.values():
         sides = zip(gear.bodies, gear.teeth, gear.pivots(at), (False, gear.internal), strict=True)
         for body, teeth, centre, is_ring in sides if gear.module(at) is not None else ():
             radius = teeth * gear.slip_m(at)
-            if (wheel := (body, centre, f"{radius:.9g}", is_ring)) not in drawn:
-                drawn.add(wheel)
-                yield BodyCurves(body, centre, body, 0.0, _wheel(radius, is_ring))
+            wheel = BodyCurves(body, centre, body, 0.0, _wheel(radius, is_ring))
+            wheels.setdefault((body, centre, f"{radius:.9g}", is_ring), wheel)
+    return wheels.values()
 
 
 def _circle(radius: float, corners: int = AROUND) -> Array:

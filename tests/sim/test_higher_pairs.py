@@ -13,7 +13,7 @@ from models.lectures.tasks.cams import load_cam_task
 from models.scene import GROUND, Driver, Link, Scene
 from models.scene.laws import ConstantSpeed
 from reports.judge.cell import check
-from reports.lectures.cams.cam_request import cam_of, limits_of, load_of
+from reports.lectures.cams.cam_request import designed
 from reports.lectures.cams.cam_scene import cam_scene
 from sim.run import run
 from tests.analytic.gears.trains import KNOWN
@@ -76,8 +76,7 @@ def test_a_free_cam_keeps_its_energy(engine: str) -> None:
 def test_the_scene_of_a_designed_cam_is_held(name: str) -> None:
     """The last one has a law with a jump of the acceleration, at samples of the run."""
     task, _ = load_cam_task(name)
-    cam = cam_of(task, limits_of(task))
-    made = cam_scene(task.name, task.source, cam, load_of(task), task.speed_rad_s)
+    made = cam_scene(task.name, task.source, designed(task))
     scene = parse_scene(scene_text(made), "made")
     for engine in ENGINES:
         found = check(of_turns(scene, engine, 360, with_forces=True))

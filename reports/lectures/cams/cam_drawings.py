@@ -1,9 +1,11 @@
-"""Diagrams of a cam over its angle, and its profile coloured by the pressure angle."""
+"""Drawings of a cam: diagrams over its angle, and the cam with its follower to scale, its profile
+coloured by the pressure angle."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -11,27 +13,46 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
 from matplotlib.ticker import MultipleLocator
 
 from analytic.cams.cam_design import ExaminedCam
-from analytic.cams.profile import touch, turn_of
+from analytic.cams.profile import CamContact, Plane, largest, touch, turn_of
 from models.array import Array
+from models.scene.cams import Cam, OscillatingFollower
 from reports.figures.sheet import SIDES, Panels, sheet
-from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, Look, saved, shorten, styled
-from reports.lectures.cams.cam_sheet import draw_cam
+from reports.figures.style import COLUMN_IN, INK, QUIET, TINY, Look, saved, shorten, styled
 from reports.lectures.cams.profile_files import unit_of
-from reports.lectures.drawing.sheets.paper import Paper
+from reports.lectures.drawing.sheets.paper import (
+    Canvas,
+    Paper,
+    ToScale,
+    arrow,
+    arrow_head,
+    headed,
+    inner_box,
+    text,
+)
 from reports.output.write import crankcheck_version
 
 CURVE: Look = {"color": "#1f5f9e", "linewidth": 1.2}
-LIMIT: Look = {"color": "#c04a1d", "linewidth": 0.7, "linestyle": (0, (4.0, 1.5))}
+PITCH: Look = {"color": "#2f7d4c", "linewidth": 0.7, "linestyle": (0, (5.0, 2.0))}
+CIRCLE: Look = {"color": QUIET, "linewidth": 0.6, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
+FOLLOWER: Look = {"color": INK, "linewidth": 1.0}
+FORCE, FILL, COLOURS = "#c04a1d", "#dbe7f3", "viridis_r"
+ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
+ROUND = np.exp(1j * np.linspace(0.0, math.tau, 361))
 STEPS = 240
 """Samples between two knots."""
-COLOURS = "viridis_r"
+WORDS_MM, LINE_MM, BAR_MM = 62.0, 5.2, 14.0
+"""Width of the numbers beside the cam, and the heights of one, and of the colours below them."""
 
 
-def drawings(name: str, source: str, found: ExaminedCam, paper: str) -> Mapping[str, bytes]:
-    """Return all drawings as SVG and PDF by the names of their files."""
+def drawings(
+    name: str, source: str, found: ExaminedCam, numbers: Mapping[str, str], paper: str
+) -> Mapping[str, bytes]:
+    """Return all drawings as SVG and PDF by the names of their files; the numbers, by name, stand
+    beside the cam."""
     size, note = Paper.of(paper), f"crankcheck {crankcheck_version()}, closed form; {source}"
     files: dict[str, bytes] = {}
     with styled():
@@ -39,9 +60,7 @@ def drawings(name: str, source: str, found: ExaminedCam, paper: str) -> Mapping[
             "diagrams": draw_diagrams(name, note, found),
             "checks": draw_checks(name, note, found),
         }
-        if found.rise_pressure[0] or found.return_pressure[0]:
-            figures["pressure"] = draw_pressure(name, note, found)
-        drawn = draw_cam(name, note, found, size)
+        drawn = draw_cam(name, note, found, numbers, size)
     for kind in ("svg", "pdf"):
         files |= {
             f"{key}.{kind}": saved(one, kind, f"{name}: {key}") for key, one in figures.items()
@@ -66,36 +85,36 @@ def draw_diagrams(name: str, note: str, found: ExaminedCam) -> Figure:
     notes = [f"{note}; at {omega:g} rad/s."]
     if found.cam.law.continuous < 2:
         notes.append("Where a rate jumps, the next one is infinite, and is not drawn there.")
-    figure, top = _over_the_turn(f"Law of motion: {name}", found, rows, notes)
-    _name_segments(top, found)
+    figure, axes = _over_the_turn(f"Law of motion: {name}", found, rows, notes)
+    for (start, end), one in zip(pairwise(_borders(found)), found.cam.law.segments, strict=True):
+        if end - start >= 36.0:  # it has room for its name
+            axes[0].annotate(
+                one.kind, (0.5 * (start + end), 1.0), (0.0, 2.0), ha="center", va="bottom",
+                xycoords=("data", "axes fraction"), textcoords="offset points", size=TINY,
+                color=QUIET,
+            )  # fmt: skip
     return figure
 
 
 def _over_the_turn(
     title: str, found: ExaminedCam, rows: Sequence[tuple[str, Array]], notes: Sequence[str]
-) -> tuple[Figure, Axes]:
-    """Draw series over the cam's angle, a panel for each label; return the figure and its top."""
+) -> tuple[Figure, list[Axes]]:
+    """Draw series over the cam's angle, a panel for each label, between borders of segments."""
     panels = Panels(len(rows), 1, 1.0, *SIDES, 0.22, between=(0.0, 0.16))
     figure, axes = sheet(COLUMN_IN, panels, title, [], notes)
     degrees = np.degrees(samples(found))
     for one, (label, series) in zip(axes, rows, strict=True):
         one.plot(degrees, series, **CURVE)
         one.set_ylabel(label)
-        _mark(one, found, labelled=one is axes[-1])
-    return figure, axes[0]
-
-
-def _mark(axes: Axes, found: ExaminedCam, *, labelled: bool) -> None:
-    """Mark the turn, the line at 0, and the borders of the segments."""
-    axes.set_xlim(0.0, 360.0)
-    axes.xaxis.set_major_locator(MultipleLocator(60.0))
-    axes.axhline(0.0, color=QUIET, linewidth=0.5)
-    for border in _borders(found)[1:-1]:
-        axes.axvline(border, color=QUIET, linewidth=0.5)
-    axes.tick_params(labelbottom=labelled)
-    shorten(axes)
-    if labelled:
-        axes.set_xlabel("angle of the cam [deg]")
+        one.set_xlim(0.0, 360.0)
+        one.xaxis.set_major_locator(MultipleLocator(60.0))
+        one.axhline(0.0, color=QUIET, linewidth=0.5)
+        for border in _borders(found)[1:-1]:
+            one.axvline(border, color=QUIET, linewidth=0.5)
+        one.tick_params(labelbottom=one is axes[-1])
+        shorten(one)
+    axes[-1].set_xlabel("angle of the cam [deg]")
+    return figure, axes
 
 
 def _borders(found: ExaminedCam) -> list[float]:
@@ -103,67 +122,131 @@ def _borders(found: ExaminedCam) -> list[float]:
     return [0.0, *np.cumsum(spans).tolist()]
 
 
-def _name_segments(axes: Axes, found: ExaminedCam) -> None:
-    """Write the kinds of motion above a panel, where they have room."""
-    borders = _borders(found)
-    for start, end, one in zip(borders, borders[1:], found.cam.law.segments, strict=False):
-        if end - start >= 36.0:
-            axes.annotate(
-                one.kind, (0.5 * (start + end), 1.0), (0.0, 2.0), ha="center", va="bottom",
-                xycoords=("data", "axes fraction"), textcoords="offset points", size=TINY,
-                color=QUIET,
-            )  # fmt: skip
-
-
 def draw_checks(name: str, note: str, found: ExaminedCam) -> Figure:
     """Draw pressure angle, curvature of the profile, contact force and torque over the angle."""
     phi = samples(found)
-    contact, forces = touch(found.cam, phi), found.forces(phi)
+    contact = touch(found.cam, phi)
     with np.errstate(divide="ignore"):
         rows = [
             ("pressure angle [deg]", np.degrees(contact.pressure_rad)),
             ("curvature [1/m]", 1.0 / contact.radius_m),
         ]
-    if forces is not None:
+    notes = [f"{note}; curvature of the profile, positive where convex"]
+    if found.load is not None:
+        forces = found.forces(phi)
+        notes[0] += f"; forces at {found.speed_rad_s:g} rad/s"
         rows += [
             ("contact force [N]", forces.contact_n),
             ("driving torque [N m]", forces.torque_nm),
         ]
-    notes = [f"{note}; curvature of the profile, positive where convex"]
-    notes[0] += f"; forces at {found.speed_rad_s:g} rad/s." if forces is not None else "."
+    notes[0] += "."
     return _over_the_turn(f"Pressure angle and forces: {name}", found, rows, notes)[0]
 
 
-def draw_pressure(name: str, note: str, found: ExaminedCam) -> Figure:
-    """Draw the profile coloured by the magnitude of the pressure angle of the point in contact."""
-    contact = touch(found.cam, samples(found))
-    profile = contact.on_cam(contact.contact) * 1000.0
-    (rise, at), (back, back_at) = found.rise_pressure, found.return_pressure
-    words = [
-        f"{note}; dots: largest in the rise {math.degrees(rise):.4g} deg, in the return "
-        f"{math.degrees(back):.4g} deg."
-    ]
-    marker: Look = {"color": INK, "marker": "o", "markersize": 2.6, "linestyle": "none"}
-    base: Look = {"color": QUIET, "linewidth": 0.6, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
-    entries = [(Line2D([], [], **base), "base circle"), (Line2D([], [], **marker), "largest")]
-    panels = Panels(1, 1, 2.5, 0.48, 0.62, 0.1)
-    figure, (axes,) = sheet(COLUMN_IN, panels, f"Pressure angle: {name}", entries, words)
-    points = np.array([profile.real, profile.imag]).T
-    drawn = LineCollection(
-        list(np.stack([points[:-1], points[1:]], axis=1)), cmap=COLOURS, linewidths=3.0,
-        array=np.abs(np.degrees(contact.pressure_rad[:-1])), capstyle="round",
-    )  # fmt: skip
-    axes.add_collection(drawn)
-    turn = np.exp(1j * np.linspace(0.0, math.tau, 361)) * found.cam.base_m * 1000.0
-    axes.plot(turn.real, turn.imag, **base)
-    axes.plot(0.0, 0.0, "+", color=INK, markersize=5.0)
-    there = touch(found.cam, np.array([at, back_at]))
-    dots = there.on_cam(there.contact) * 1000.0
-    axes.plot(dots.real, dots.imag, **marker)
-    axes.set(xlabel="x [mm]", ylabel="y [mm]")
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.06)
-    box = axes.get_position()
-    bar = figure.add_axes((box.x1 + 0.03, box.y0, 0.03, box.height))
-    figure.colorbar(drawn, cax=bar).set_label("pressure angle [deg]", size=SMALL)
-    return figure
+@dataclass(frozen=True)
+class CamPlot:
+    """Axes in millimetres of the sheet, and a drawing to scale in them."""
+
+    axes: Axes
+    scaled: ToScale
+
+    def place(self, points: Plane) -> Array:
+        return self.scaled.at(np.stack([points.real, points.imag], axis=-1))
+
+    def curve(self, points: Plane, **look: object) -> None:
+        self.axes.add_line(Line2D(*self.place(points).T, **look))  # type: ignore[arg-type]  # a look
+
+    def write(self, point: complex, words: str, right: float, up: float, ha: str = "left") -> None:
+        x, y = self.place(np.array(point))
+        text(self.axes, x + right, y + up, words, ha=ha)
+
+
+def draw_cam(
+    name: str, note: str, found: ExaminedCam, numbers: Mapping[str, str], paper: Paper
+) -> Canvas:
+    """Draw the cam with its follower where the pressure angle of the rise is largest, or the speed
+    of one that has no such angle; the colour of the profile is the angle of the point in contact.
+    """
+    cam, (most, phi) = found.cam, found.pressures[0]
+    if not most:
+        phi = largest(turn_of(cam), lambda at: cam.law.at(at).first)[1]
+    contact, turned = touch(cam, np.array([phi])), np.exp(1j * cam.sense * phi)
+    round_ = touch(cam, np.linspace(0.0, math.tau, 1441))
+    profile = round_.on_cam(round_.contact) * turned
+    size = 0.5 * float(np.abs(profile).max())
+    lines = _follower(cam, contact, size)
+    drawing, words = inner_box(paper).side_by_side(WORDS_MM, 4.0)
+    canvas, frame = headed(paper, f"Cam: {name}", note, drawing)
+    every = np.concatenate([profile, *lines, cam.base_m * ROUND])
+    scale, middle = drawing.fitted(np.stack([every.real, every.imag], axis=1), 4.0)
+    plot = CamPlot(canvas.layer("cam"), ToScale(drawing, scale, middle))
+    plot.axes.add_patch(Polygon(plot.place(profile), closed=True, fc=FILL, ec="none"))
+    plot.curve(cam.base_m * ROUND, **CIRCLE)
+    if cam.follower.roller_m and round_.pitch is not None:
+        plot.curve(round_.on_cam(round_.pitch) * turned, **PITCH)
+    plot.curve(profile, **CURVE)
+    if round_.pressure_rad.any():
+        points = plot.place(profile)
+        drawn = LineCollection(
+            list(np.stack([points[:-1], points[1:]], axis=1)), cmap=COLOURS, linewidths=3.0,
+            array=np.abs(np.degrees(round_.pressure_rad[:-1])), capstyle="round",
+        )  # fmt: skip
+        plot.axes.add_collection(drawn)
+        place = np.array([words.left, words.bottom + BAR_MM - 4.0, 0.9 * WORDS_MM, 4.0])
+        bar = canvas.figure.add_axes(place / np.tile([paper.width, paper.height], 2))
+        label = "pressure angle [deg]"
+        canvas.figure.colorbar(drawn, cax=bar, orientation="horizontal").set_label(label)
+    plot.curve(0.06 * size * ROUND, **FOLLOWER)
+    plot.write(0j, "O", 2.0, -4.0)
+    for line in lines:
+        plot.curve(line, **FOLLOWER)
+    if isinstance(cam.follower, OscillatingFollower):
+        plot.write(complex(cam.follower.pivot_m), "B", 1.5, -4.5)
+    _draw_pressure(plot, contact, size)
+    arc = 0.55 * cam.base_m * np.exp(1j * cam.sense * np.linspace(-2.4, -0.9, 60))
+    plot.curve(arc, **FOLLOWER)
+    before, end = plot.place(arc[-2:])
+    arrow_head(plot.axes, end, (end - before) / np.hypot(*(end - before)), INK)
+    shown = {"scale m/mm": f"{scale:g}", "shown at deg": f"{math.degrees(phi):.4g}", **numbers}
+    down = min(LINE_MM, (words.height - BAR_MM) / (len(shown) + 1))
+    for k, (head, number) in enumerate(shown.items(), start=1):
+        text(frame, words.left, words.top - k * down, head, color=QUIET)
+        text(frame, words.left + 0.65 * WORDS_MM, words.top - k * down, number)
+    return canvas
+
+
+def _follower(cam: Cam, contact: CamContact, size: float) -> list[Plane]:
+    """Return the lines of the follower at its contact (1,), in the frame of the ground: roller or
+    face, its stem in a guide, or its arm and pivot, of a ``size`` [m] where it has none."""
+    follower, (touched,), (normal,) = cam.follower, contact.contact, contact.normal
+    tip = touched + follower.roller_m * normal
+    lines = [tip + follower.roller_m * ROUND] if follower.roller_m else []
+    if isinstance(follower, OscillatingFollower):
+        pivot = complex(follower.pivot_m)
+        lines.append(pivot + 0.05 * size * ROUND)
+        if not follower.is_flat:
+            return [*lines, np.array([pivot, tip])]
+        foot = pivot + follower.face_m * normal  # on the face, drawn to beyond the contact
+        return [*lines, np.array([pivot, foot, tip + 0.5 * size * (tip - foot) / abs(tip - foot)])]
+    if follower.is_flat:
+        tip = follower.offset_m + 1j * tip.imag
+        reach = max(0.6 * size, *(1.15 * abs(speed) for speed in cam.law.extremes(1)))
+        lines.append(tip + np.array([-reach, reach]))
+    guide = tip + np.array([1.0j, 1.3j]) * size
+    return [*lines, tip + np.array([0.0, 1.4j * size]), guide - 0.07 * size, guide + 0.07 * size]
+
+
+def _draw_pressure(plot: CamPlot, contact: CamContact, size: float) -> None:
+    """Draw the normal, the velocity of the follower, and the angle between them at the contact."""
+    (touched,), (normal,), (alpha,) = contact.contact, contact.normal, contact.pressure_rad
+    centre = touched if contact.pitch is None else contact.pitch[0]
+    start, end = plot.place(np.array([touched, centre + 0.9 * size * normal]))
+    arrow(plot.axes, start, end, "normal", FORCE)
+    motion = normal * np.exp(-1j * alpha)
+    plot.curve(np.array([centre, centre + 0.8 * size * motion]), color=QUIET, linewidth=0.4)
+    arc = centre + 0.6 * size * motion * np.exp(1j * alpha * np.linspace(0.0, 1.0, 40))
+    plot.curve(arc, color=FORCE, linewidth=0.6)
+    if abs(alpha) > math.radians(3.0):
+        beside = centre + 0.6 * size * motion * np.exp(1.15j * alpha)
+        side = "right" if (normal * np.exp(0.5j * math.pi * np.sign(alpha))).real < 0.0 else "left"
+        plot.write(beside, f"{ALPHA} = {abs(math.degrees(alpha)):.3g}°", 0.0, 0.0, side)

@@ -2,17 +2,17 @@
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 from rich.console import Console
 
-from analytic.gears.assembly import PlanetStage, check_planets, planet_stages
+from analytic.gears.assembly import check_planets, planet_stages
 from analytic.gears.involute import TeethPair
-from analytic.gears.torques import TrainTorques, torques
-from analytic.gears.trains import Train, elementary_trains
+from analytic.gears.torques import MeshLoad, TrainTorques, torques
+from analytic.gears.trains import ElementaryTrain, Train, elementary_trains
 from models.errors import CrankcheckError, few, shown
 from models.files.reading import load_scene
 from models.scene import Scene
@@ -20,14 +20,15 @@ from models.scene.characteristics import Constant
 from reports.output.console import say, say_each, say_whole, show_rows
 from reports.requests.options import SceneName, option
 
-Row = dict[str, object]
 COLUMNS = {
     "members": "body speed_rad_s ratio torque_n_m power_w",
     "elementary_trains": "carrier gears basic_ratio of to",
     "meshes": "gear tangential_n radial_n rolling_w loss_w module_mm pressure_angle_deg",
     "teeth": "gear teeth pitch_mm base_mm tip_mm root_mm thickness_mm contact_ratio",
-    "planets": "planet numbers clearance_mm",
+    "planets": "planet numbers",
 }
+"""Columns of the tables by name."""
+Rows = Iterable[tuple[object, ...]]
 
 
 @dataclass(frozen=True)
@@ -77,50 +78,40 @@ def _document(scene: Scene, request: GearsRequest) -> dict[str, object]:
     train = Train(tuple(scene.gears.values()))
     stages = planet_stages(train.gears, scene.points_of)
     check_planets(stages)
-    if request.planets is not None and not stages:
-        raise CrankcheckError("--planets: no planet of the scene meshes with two central gears")
-    for stage in stages if request.planets is not None else ():
-        stage.check(request.planets or 0)
-    teeth = [row for each in _pairs(scene, request.shift) for row in _teeth(each)]
+    if request.planets is not None:
+        if not stages:
+            raise CrankcheckError("--planets: no planet of the scene meshes with two central gears")
+        for stage in stages:
+            stage.check(request.planets)
+    pairs = _pairs(scene, request.shift)
     inputs = _inputs(scene, train, _values(request.speed, "--speed", train.bodies))
-    loads = _values(request.torque, "--torque", train.bodies) or _constant_loads(
-        scene, train, inputs
-    )
+    given = _values(request.torque, "--torque", train.bodies)
+    loads = given or _constant_loads(scene, train, inputs)
     found = torques(train, inputs, loads)
     source = next((body for body, speed in inputs.items() if speed), next(iter(inputs)))
     ratios = train.influence((source, *(body for body in inputs if body != source)))
+    members = (
+        (body, speed, str(ratios[body][0]), found.torques_n_m[body], found.powers_w[body])
+        for body, speed in found.speeds_rad_s.items()
+    )
     return {
         "scene": scene.name,
         "mobility": train.mobility,
         "inputs_rad_s": inputs,
         "ratio_to": source,
         "efficiency": found.efficiency if loads else None,
-        "members": [
-            {
-                "body": body,
-                "speed_rad_s": speed,
-                "ratio": str(ratios[body][0]),
-                "torque_n_m": found.torques_n_m[body],
-                "power_w": found.powers_w[body],
-            }
-            for body, speed in found.speeds_rad_s.items()
-        ],
-        "elementary_trains": [
-            {
-                "carrier": one.carrier,
-                "gears": list(one.gears),
-                "basic_ratio": str(one.value(last, first)),
-                "of": last,
-                "to": first,
-            }
-            for one in elementary_trains(train.gears)
-            for first, last in [(next(iter(one.values)), list(one.values)[-1])]
-        ],
-        "meshes": _meshes(scene, found) if loads else [],
-        "teeth": teeth,
-        "planets": [_planet(stage, request.planets) for stage in stages],
-        "notes": [*_notes(train, found, source, bool(loads)), *_shared(request.planets)],
+        **_table("members", members),
+        **_table("elementary_trains", map(_basic_ratio, elementary_trains(train.gears))),
+        **_table("meshes", (_mesh(scene, mesh) for mesh in found.meshes if loads)),
+        **_table("teeth", (row for pair in pairs for row in _teeth(pair))),
+        **_table("planets", ((stage.planet, stage.counts) for stage in stages)),
+        "notes": _notes(train, found, source, bool(loads), request.planets),
     }
+
+
+def _table(name: str, rows: Rows) -> dict[str, list[dict[str, object]]]:
+    """Return a table by its name, its rows by column."""
+    return {name: [dict(zip(COLUMNS[name].split(), row, strict=True)) for row in rows]}
 
 
 def _values(texts: Sequence[str], name: str, bodies: Sequence[str]) -> dict[str, float]:
@@ -178,41 +169,31 @@ def _pairs(scene: Scene, shift: Sequence[str]) -> list[TeethPair]:
     return pairs
 
 
-def _teeth(pair: TeethPair) -> list[Row]:
-    return [
-        {
-            "gear": f"{pair.pair.name}: {body}",
-            "teeth": pair.pair.teeth[n],
-            "pitch_mm": 2e3 * pair.pitch_radii_m[n],
-            "base_mm": 2e3 * pair.base_radii_m[n],
-            "tip_mm": 2e3 * pair.tip_radii_m[n],
-            "root_mm": 2e3 * pair.root_radii_m[n],
-            "thickness_mm": 1e3 * pair.thicknesses_m[n],
-            "contact_ratio": pair.contact_ratio,
-        }
-        for n, body in enumerate(pair.pair.bodies)
-    ]
+def _basic_ratio(train: ElementaryTrain) -> tuple[object, ...]:
+    """Return the ratio of the last gear to the first, with the carrier at rest."""
+    first, *_, last = train.values
+    return train.carrier, list(train.gears), str(train.values[last]), last, first
 
 
-def _meshes(scene: Scene, found: TrainTorques) -> list[Row]:
-    rows: list[Row] = []
-    for mesh in found.meshes:
-        row: Row = {"gear": mesh.gear.name, "rolling_w": mesh.rolling_w, "loss_w": mesh.loss_w}
-        if module := mesh.gear.module(scene.points_of):
-            force, angle = mesh.tangential_n(module), mesh.gear.pressure_angle_rad
-            row |= {"tangential_n": force, "radial_n": force * math.tan(angle)}
-            row |= {"module_mm": 1e3 * module, "pressure_angle_deg": math.degrees(angle)}
-        rows.append(row)
-    return rows
+def _teeth(pair: TeethPair) -> Rows:
+    radii = pair.pitch_radii_m, pair.base_radii_m, pair.tip_radii_m, pair.root_radii_m
+    sizes = 1e3 * np.array([*(2.0 * each for each in radii), pair.thicknesses_m])
+    for body, teeth, own in zip(pair.pair.bodies, pair.pair.teeth, sizes.T.tolist(), strict=True):
+        yield f"{pair.pair.name}: {body}", teeth, *own, pair.contact_ratio
 
 
-def _planet(stage: PlanetStage, count: int | None) -> Row:
-    gap = None if count is None or count < 2 else 1e3 * stage.clearance_m(count)
-    return {"planet": stage.planet, "numbers": stage.counts(),
-            "clearance_mm": gap}  # fmt: skip
+def _mesh(scene: Scene, mesh: MeshLoad) -> tuple[object, ...]:
+    powers, module = (mesh.rolling_w, mesh.loss_w), mesh.gear.module(scene.points_of)
+    if module is None:
+        return mesh.gear.name, None, None, *powers, None, None
+    force, angle = mesh.tangential_n(module), mesh.gear.pressure_angle_rad
+    forces = force, force * math.tan(angle)
+    return mesh.gear.name, *forces, *powers, 1e3 * module, math.degrees(angle)
 
 
-def _notes(train: Train, found: TrainTorques, source: str, loaded: bool) -> list[str]:
+def _notes(
+    train: Train, found: TrainTorques, source: str, loaded: bool, planets: int | None
+) -> list[str]:
     notes = [f"ratios are those to {source}, other inputs at rest"] * (train.mobility > 1)
     if train.passive:
         notes.append(f"{train.passive} relations are passive: equal planets share their loads")
@@ -220,10 +201,6 @@ def _notes(train: Train, found: TrainTorques, source: str, loaded: bool) -> list
         notes.append("no torques: give --torque BODY=N_M; the inputs close the balance")
     for name, times in found.circulating.items():
         notes.append(f"power circulates: {times:.4g} times the input power rolls through {name}")
+    if planets is not None and planets > 1:  # the scene's one planet stands for them
+        notes.append(f"{planets} planets share the loads of each mesh that is listed for one")
     return notes
-
-
-def _shared(count: int | None) -> list[str]:
-    """Say that the scene's one planet stands for several."""
-    several = f"{count} planets share the loads of each mesh that is listed for one"
-    return [several] * (count is not None and count > 1)

@@ -7,11 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.cams.base_circle import (
-    Margin,
-    curvature_margin,
-    least_base,
-    pressure_margin,
+from analytic.cams.cam_design import (
+    CamLimits,
+    least_cam,
     refuse_undercut,
     sharpest,
     steepest,
@@ -23,8 +21,8 @@ from models.scene.cams import Cam, OscillatingFollower, TranslatingFollower
 from tests.analytic.cams.designs import FOLLOWERS, designs
 
 
-def least(cam: Cam, margin: Margin) -> float:
-    return least_base(cam.law, cam.follower, cam.sense, margin)
+def least(cam: Cam, *limits: float) -> float:
+    return least_cam(cam.law, cam.follower, cam.sense, CamLimits(*limits)).base_m
 
 
 DENSE = np.linspace(0.0, math.tau, 40_001)
@@ -81,7 +79,7 @@ def test_a_cam_that_undercuts_is_refused_with_the_radius_from_which_it_does_not(
         assert contact == "roller" or (small.radius_m < 0.0).any()
         for more in (1e-6, 1e-2, 0.05) if motion == "oscillating" else (1e-6, 1e-2, 0.1, 1.0, 10.0):
             large = replace(cam, base_m=limit * (1 + more))
-            assert curvature_margin()(large) > 0.0
+            assert CamLimits().margin(large) > 0.0
             refuse_undercut(large)
     assert refused
 
@@ -97,8 +95,8 @@ def test_the_base_radius_of_a_convex_flat_faced_cam_is_the_closed_form() -> None
     said = r"undercuts at (90|180) deg .* from a base radius of 0\.02 m on it does not"
     with pytest.raises(CrankcheckError, match=said):
         refuse_undercut(cam)
-    assert least(cam, curvature_margin()) == pytest.approx(closed, rel=1e-12)
-    assert least(cam, curvature_margin(0.005)) == pytest.approx(closed + 0.005, rel=1e-12)
+    assert least(cam) == pytest.approx(closed, rel=1e-12)
+    assert least(cam, math.inf, math.inf, 0.005) == pytest.approx(closed + 0.005, rel=1e-12)
 
 
 def test_the_base_circle_of_a_permitted_pressure_angle_just_keeps_it() -> None:
@@ -106,7 +104,7 @@ def test_the_base_circle_of_a_permitted_pressure_angle_just_keeps_it() -> None:
     permitted = math.radians(30)
     for sense in (1, -1):
         cam = Cam(law, 0.3, TranslatingFollower("roller", 0.01, 0.008), sense)
-        base = least(cam, pressure_margin(permitted))
+        base = least(cam, permitted)
         s, first, *_ = law.at(DENSE)
         rising = first >= 0.0
         start = (np.abs(sense * first - 0.008) / math.tan(permitted) - s)[rising].max()
@@ -114,14 +112,14 @@ def test_the_base_circle_of_a_permitted_pressure_angle_just_keeps_it() -> None:
         angle, _ = steepest(replace(cam, base_m=base), rising=True)
         assert angle == pytest.approx(permitted, rel=1e-12)
         # A limit for the return as well is never a smaller circle.
-        assert least(cam, pressure_margin(permitted, math.radians(10))) >= base
+        assert least(cam, permitted, math.radians(10)) >= base
     swing = CamLaw(tuple(replace(one, lift=10 * one.lift) for one in law.segments))
     arm = Cam(swing, 0.05, OscillatingFollower("roller", 0.01, pivot_m=0.12, arm_m=0.1))
-    base = least(arm, pressure_margin(math.radians(40), math.radians(40)))
+    base = least(arm, math.radians(40), math.radians(40))
     found = touch(replace(arm, base_m=base), DENSE).pressure_rad
     assert np.abs(found).max() == pytest.approx(math.radians(40), rel=1e-8)
     with pytest.raises(CrankcheckError, match="the nearest to it is"):
-        least(arm, pressure_margin(math.radians(1), math.radians(1)))
+        least(arm, math.radians(1), math.radians(1))
 
 
 def test_a_law_whose_velocity_drops_has_no_base_circle_but_for_a_knife_edge() -> None:

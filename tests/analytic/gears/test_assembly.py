@@ -1,7 +1,7 @@
 """Planets that fit, against every tooth of both central gears tried in turn."""
 
+import cmath
 import math
-from itertools import product
 
 import pytest
 
@@ -14,7 +14,16 @@ from tests.models.scene.test_gears import PLANETARY
 
 def stage(sun: int, p: int, q: int, other: int, *, internal: bool = True) -> PlanetStage:
     first = Gear("s", ("sun", "planet"), (sun, p), "arm")
-    return PlanetStage("planet", first, Gear("r", ("planet", "end"), (q, other), "arm", internal))
+    second = Gear("r", ("planet", "end"), (q, other), "arm", internal)
+    arm = {"O": (0.0, 0.0), "P": (0.06, 0.0)}
+    points = {
+        "arm": arm,
+        "sun": {"O": (0.0, 0.0)},
+        "end": {"O": (0.0, 0.0)},
+        "planet": {"P": (0.0, 0.0)},
+    }
+    (found,) = planet_stages([first, second], points)
+    return found
 
 
 @pytest.mark.parametrize("teeth", [(20, 40, 40, 100, True), (21, 19, 19, 59, True),
@@ -56,7 +65,6 @@ def test_planets_of_a_scene_are_found_and_placed() -> None:
     assert [one.planet for one in stages] == ["p", "q", "r"]
     assert {one.kind for one in stages} == {stages[0].kind}
     assert stages[0].period == 120
-    assert stages[0].tip_m == pytest.approx(0.042)
     check_planets(stages)
     check_planets(scene_of({"p": 0.0, "q": 90.0, "r": 213.0}))
     with pytest.raises(CrankcheckError) as error:
@@ -70,12 +78,12 @@ def test_planets_of_a_scene_are_found_and_placed() -> None:
 def test_numbers_of_planets_that_do_not_fit_or_overlap_are_refused() -> None:
     (one,) = scene_of({"p": 0.0})
     one.check(3)
-    assert one.counts() == [1, 2, 3, 4]
+    assert one.counts == [1, 2, 3, 4]
     for count, message in (
         (7, "7 equal planets like p can not be assembled: (20 + 100)/7 = 17.1429 "
          "has to be a whole number; numbers that work: 1, 2, 3, 4"),
-        (5, "5 planets like p overlap: addendum circles of 84 mm stand 70.5342 mm apart; "
-         "numbers that work: 1, 2, 3, 4"),
+        (5, "5 equal planets like p overlap: 4 have room beside each other; numbers that work: "
+         "1, 2, 3, 4"),
         (0, "0 equal planets like p can not be assembled"),
     ):  # fmt: skip
         with pytest.raises(CrankcheckError) as error:
@@ -83,9 +91,11 @@ def test_numbers_of_planets_that_do_not_fit_or_overlap_are_refused() -> None:
         assert message in str(error.value)
 
 
-def test_clearance_is_that_of_two_circles() -> None:
-    (one,) = scene_of({"p": 0.0})
-    for count, n in product((2, 3, 4, 5), (1,)):
-        step = n * math.tau / count
-        apart = math.dist((0.06, 0.0), (0.06 * math.cos(step), 0.06 * math.sin(step)))
-        assert one.clearance_m(count) == pytest.approx(apart - 2 * 0.042)
+@pytest.mark.parametrize(("sun", "planet"), [(20, 40), (40, 20), (60, 20), (17, 90), (30, 28)])
+def test_planets_have_room_where_their_circles_do_not_touch(sun: int, planet: int) -> None:
+    one = stage(sun, planet, planet, sun + 2 * planet)
+    pitch = 0.12 / (sun + planet)  # the module; centres are 0.06 m apart
+    tip = 0.5 * pitch * (planet + 2)
+    for count in range(2, 40):
+        apart = abs(0.06 - 0.06 * cmath.exp(1j * math.tau / count))
+        assert (apart > 2.0 * tip) == (count <= one.most)

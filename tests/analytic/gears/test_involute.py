@@ -27,7 +27,6 @@ def pair(z: int, y: int, module: float = 1.0, x: tuple[float, float] = (0.0, 0.0
 def test_shigley_example_13_1() -> None:
     """16 and 40 teeth of diametral pitch 2: lengths in inches."""
     teeth = pair(16, 40, 0.5)
-    assert teeth.pitch_m == pytest.approx(1.57, abs=5e-3)
     assert teeth.distance_m == pytest.approx(14.0)
     assert teeth.base_radii_m == pytest.approx((3.76, 9.40), abs=5e-3)
     # 1/4 in further apart the pressure angle is 22.56 degrees.
@@ -38,11 +37,9 @@ def test_shigley_example_13_1() -> None:
 def test_norton_example_9_1() -> None:
     """19 and 37 teeth of diametral pitch 6: lengths in inches."""
     teeth = pair(19, 37, 1.0 / 6.0)
-    assert teeth.pitch_m == pytest.approx(0.524, abs=5e-4)
-    assert teeth.base_pitch_m == pytest.approx(0.492, abs=5e-4)
     assert teeth.distance_m == pytest.approx(4.667, abs=5e-4)
     assert teeth.contact_ratio == pytest.approx(1.62, abs=5e-3)
-    assert teeth.contact_ratio * teeth.base_pitch_m == pytest.approx(0.798, abs=1e-3)
+    assert teeth.contact_ratio * 0.492 == pytest.approx(0.798, abs=1e-3)  # the base pitch
     assert 2 * teeth.tip_radii_m[0] == pytest.approx(3.500, abs=1e-3)
 
 
@@ -57,9 +54,9 @@ def test_least_teeth_of_norton_table_9_4_and_shigley() -> None:
 def test_interference_is_that_of_shigley_13_7() -> None:
     """13 teeth run with 13 to 16, 14 to 26, 15 to 45 and 16 to 101 at 20 degrees, no further."""
     for z, most in ((13, 16), (14, 26), (15, 45), (16, 101)):
-        assert not any(pair(z, most).interferes)
-        assert pair(z, most + 1).interferes == (False, True)
-    assert any(pair(12, 12).interferes)
+        assert not pair(z, most).interferes
+        assert pair(z, most + 1).interferes
+    assert pair(12, 12).interferes
 
 
 def test_shifted_pair_of_khk() -> None:
@@ -101,7 +98,7 @@ def test_contact_ratio_is_that_of_flanks_in_contact_along_the_line(
     far = np.hypot(*(points - centre).T)
     second = far >= teeth.tip_radii_m[1] if internal else far <= teeth.tip_radii_m[1]
     length = (first & second).sum() * (s[1, 0] - s[0, 0])
-    assert length / teeth.base_pitch_m == pytest.approx(teeth.contact_ratio, abs=4e-4)
+    assert length / (math.pi * math.cos(A20)) == pytest.approx(teeth.contact_ratio, abs=4e-4)
 
 
 def test_shifted_thicknesses_close_the_working_pitch_circle() -> None:
