@@ -73,11 +73,6 @@ class CamPair:
     outline: tuple[tuple[float, float], ...] = ()
 
     @property
-    def hold(self) -> str:
-        """How an engine holds it, in words."""
-        return f"by contact, {self.facets} facets" if self.facets else "as a relation"
-
-    @property
     def sense(self) -> int:
         """Sense in which its law counts the angle of the cam, +1 counter-clockwise."""
         return self.profile.sense * (1 if self.slider else self.side)
