@@ -230,7 +230,7 @@ def cam_table(pair: CamPair) -> Mapping[str, object]:
     """Write the table of a cam."""
     law, follower, turns = pair.profile.law, pair.profile.follower, not pair.slider
     body = {"follower": pair.follower, "tip": pair.tip, "left": pair.side < 0}
-    face = {"face_m": getattr(follower, "face_m", 0.0)}
+    face_m = getattr(follower, "face_m", 0.0)
     return {
         "cam": pair.cam,
         **(body if turns else {"slider": pair.slider}),
@@ -238,7 +238,7 @@ def cam_table(pair: CamPair) -> Mapping[str, object]:
         "contact": follower.contact,
         "base_radius_m": pair.profile.base_m,
         "roller_radius_m": follower.roller_m,
-        **(face if any(face.values()) else {}),
+        **({"face_m": face_m} if face_m else {}),
         "clockwise": pair.sense < 0,
         "start_deg": schema.in_degrees(pair.start_rad),
         **({"facets": pair.facets} if pair.facets else {}),

@@ -14,6 +14,7 @@ and the follower a sphere or a box, that touch nothing else.
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
@@ -23,27 +24,21 @@ from models.mjcf.options import AttributeRow, Attributes, attributes
 from models.mjcf.tree import Limb, Tree
 from models.scene import Scene
 from models.scene.cam_contacts import follower_shape
-from models.scene.pairs import CamPair, Gear
-
-
-def tendon_name(gear: Gear) -> str:
-    """Return the name of its tendon; a scene's own names hold no space."""
-    return f"gear {gear.name}"
+from models.scene.pairs import CamPair
 
 
 def pair_tendons(scene: Scene, tree: Tree) -> Iterator[str]:
     """Write the tendons of gears, and of cams as a relation. Raises EngineError as `equalities`."""
     for gear in scene.gears.values():
-        factors: dict[str, int] = {}
+        factors = Counter[str]()
         for body, factor in gear.relation.items():
-            for hinge in turning(tree, body)[0]:
-                factors[hinge] = factors.get(hinge, 0) + factor
+            factors.update(dict.fromkeys(turning(tree, body)[0], factor))
         arm = gear.slip_m(scene.points_of)
-        yield from _fixed(tendon_name(gear), {name: arm * n for name, n in factors.items() if n})
-    for pair in as_relations(scene):
-        relation = CamRelation(scene, tree, pair)
-        yield from _fixed(f"cam {pair.name}", {relation.cam: relation.reach})
-        yield from _fixed(f"follower {pair.name}", {relation.follower: 1.0})
+        joints = {name: arm * count for name, count in factors.items() if count}
+        yield from _fixed(gear.joint, joints)
+    for relation in cam_relations(scene, tree):
+        yield from _fixed(relation.name, {relation.cam: relation.reach})
+        yield from _fixed(f"follower's {relation.name}", {relation.follower: 1.0})
 
 
 def _fixed(name: str, joints: Mapping[str, float]) -> Iterator[str]:
@@ -58,19 +53,12 @@ def equalities(scene: Scene, tree: Tree) -> Iterator[str]:
     """Write the equalities of cams, and those that keep the tendons of gears at their length.
     Raises EngineError for a cam or a follower that does not hang on its carrier in the tree."""
     for gear in scene.gears.values():
-        name = tendon_name(gear)
-        yield f"    <tendon{attributes({'name': name, 'tendon1': name})}/>"
-    for pair in as_relations(scene):
-        relation = CamRelation(scene, tree, pair)
-        row: AttributeRow = {"name": f"cam {pair.name}"}
-        row |= {"tendon1": f"follower {pair.name}", "tendon2": f"cam {pair.name}"}
+        yield f"    <tendon{attributes({'name': gear.joint, 'tendon1': gear.joint})}/>"
+    for relation in cam_relations(scene, tree):
+        row: AttributeRow = {"name": relation.name}
+        row |= {"tendon1": f"follower's {relation.name}", "tendon2": relation.name}
         row["polycoef"] = relation.coefficients(relation.cam_ref)
         yield f"    <tendon{attributes(row)}/>"
-
-
-def as_relations(scene: Scene) -> list[CamPair]:
-    """Return the cams that are held as a relation."""
-    return [pair for pair in scene.cams.values() if not pair.facets]
 
 
 def touching(scene: Scene, body: str, softness: Attributes) -> Iterator[str]:
@@ -96,13 +84,18 @@ def touching(scene: Scene, body: str, softness: Attributes) -> Iterator[str]:
             yield f"<geom{attributes({**row, 'condim': 1, **softness, mask: 1 << k})}/>"
 
 
+def cam_relations(scene: Scene, tree: Tree) -> list["CamRelation"]:
+    """Return the relations of the cams that are held by one. Raises EngineError: `equalities`."""
+    return [CamRelation(scene, tree, pair) for pair in scene.cams.values() if not pair.facets]
+
+
 class CamRelation:
     """Relation of the joints of ``cam`` and ``follower``, by name; the coordinates at which MuJoCo
     counts both from 0 are ``cam_ref`` and ``follower_ref``; the tendon of the cam is longer by
     ``reach`` for each rad."""
 
     def __init__(self, scene: Scene, tree: Tree, pair: CamPair) -> None:
-        self.pair, points = pair, scene.points_of
+        self.name, self.pair, points = f"cam {pair.name}", pair, scene.points_of
         centre, pivot = pair.pivots(points)
         self.lowest = pair.lowest(points, scene.sliders)
         self.cam = _hinge(tree.limbs, pair.cam, centre, pair.carrier)

@@ -21,8 +21,6 @@ from numpy.typing import NDArray
 
 from models.array import Array
 
-ORDERS = (1, 3, 5, 7)
-"""Degrees of the spline of a table whose knots are its rows."""
 SLACK = 1e-9
 """Rounding in the sum of spans over a turn, of lifts over the stroke, in a jump over its peak."""
 PI, MOST_TERMS = math.pi, 8
@@ -98,7 +96,7 @@ class CamSegment:
             self._check_table()
 
     def _check_table(self) -> None:
-        if self.order not in ORDERS:
+        if self.order not in (1, 3, 5, 7):  # degrees of splines whose knots are the rows
             raise ValueError(f"order of a table: {self.order}; there are 1, 3, 5, 7")
         rows = np.array(self.points, dtype=np.float64)
         # A periodic spline of degree k needs k + 1 points besides the repeated one.

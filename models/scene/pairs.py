@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -21,10 +21,17 @@ from models.array import Array
 from models.scene.cam_laws import CamLift
 from models.scene.cams import Cam
 
-if TYPE_CHECKING:
-    from models.scene import Slider
-
 Points = Mapping[str, tuple[float, float]]
+
+
+class Slides(Protocol):
+    """Line of a slider in the frame of its guide."""
+
+    @property
+    def through_m(self) -> tuple[float, float]: ...
+
+    @property
+    def direction_rad(self) -> float: ...
 
 
 def shared_point(points: Mapping[str, Points], body: str, carrier: str) -> str:
@@ -66,11 +73,6 @@ class CamPair:
     outline: tuple[tuple[float, float], ...] = ()
 
     @property
-    def hold(self) -> str:
-        """How an engine holds it, in words."""
-        return f"by contact, {self.facets} facets" if self.facets else "as a relation"
-
-    @property
     def sense(self) -> int:
         """Sense in which its law counts the angle of the cam, +1 counter-clockwise."""
         return self.profile.sense * (1 if self.slider else self.side)
@@ -97,7 +99,7 @@ class CamPair:
         centre = shared_point(points, self.cam, self.carrier)
         return centre, "" if self.slider else shared_point(points, self.follower, self.carrier)
 
-    def lowest(self, points: Mapping[str, Points], sliders: Mapping[str, Slider]) -> float:
+    def lowest(self, points: Mapping[str, Points], sliders: Mapping[str, Slides]) -> float:
         """Return the follower's coordinate at lift 0: the displacement of its slider [m], or the
         angle of its link against the carrier [rad]. Raises ValueError as `pivots`."""
         centre, pivot = self.pivots(points)

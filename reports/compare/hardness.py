@@ -57,37 +57,21 @@ def loading(scene: Scene, motion: Motion) -> float:
     loads alone would give a body, over that of the driver's speed on the longest link.
 
     The springs of soft constraints give way by a share of that acceleration, and evenly where it
-    grows evenly: their effect on the bodies' accelerations is its second difference. A body on a
-    guide is not turned. 0 without loads, or where a table of one ends before the motion, which then
-    has no forces either.
+    grows evenly: their effect on the bodies' accelerations is its second difference. 0 without
+    loads, or where a table of one ends before the motion, which then has no forces either.
     """
-    square, largest = scene.pace_rad_s**2, 0.0
-    guided = {slider.link for slider in scene.sliders.values()}
     try:
-        for name in dict.fromkeys(load.body for load in scene.loads.values()):
-            force, moment = _push(scene, motion, name)
-            mass = _mass(scene, name) * scene.longest_m * square
-            largest = max(largest, _largest(np.abs(np.diff(force, 2))) / mass)
-            if name in scene.links and name not in guided and scene.links[name].inertia_kg_m2:
-                inertia = scene.links[name].inertia_kg_m2 * square
-                largest = max(largest, _largest(np.abs(np.diff(moment, 2))) / inertia)
+        pushes = _pushes(scene, motion)
     except CrankcheckError:
         return 0.0
-    return largest
+    return max((_largest(np.abs(np.diff(push, 2))) / size for push, size in pushes), default=0.0)
 
 
 def parting(scene: Scene, motion: Motion) -> float:
     """Return the largest acceleration, pure, that its loads would give a body at the start if the
     gears and cams of the scene were open; 0 without any, or without loads."""
-    if not (scene.gears or scene.cams):
-        return 0.0
-    square, found = scene.pace_rad_s**2, [0.0]
-    for name in dict.fromkeys(load.body for load in scene.loads.values()):
-        force, moment = _push(scene, motion, name)
-        found.append(float(np.abs(force[0])) / (_mass(scene, name) * scene.longest_m * square))
-        if name in scene.links and scene.links[name].inertia_kg_m2:
-            found.append(float(np.abs(moment[0])) / (scene.links[name].inertia_kg_m2 * square))
-    return max(found)
+    pushes = _pushes(scene, motion) if scene.gears or scene.cams else []
+    return max((float(np.abs(push[0])) / size for push, size in pushes), default=0.0)
 
 
 def inertia_share(scene: Scene, force_n: float) -> float:
@@ -96,6 +80,19 @@ def inertia_share(scene: Scene, force_n: float) -> float:
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     push = sum(masses) * scene.longest_m * scene.pace_rad_s**2
     return push / force_n
+
+
+def _pushes(scene: Scene, motion: Motion) -> list[tuple[NDArray[np.inexact], float]]:
+    """Return the forces and moments of loads on bodies as `_push` does, each with that of a pure
+    acceleration of 1; no moments of bodies on a guide, which are not turned."""
+    square, found = scene.pace_rad_s**2, list[tuple[NDArray[np.inexact], float]]()
+    guided = {slider.link for slider in scene.sliders.values()}
+    for name in dict.fromkeys(load.body for load in scene.loads.values()):
+        force, moment = _push(scene, motion, name)
+        found.append((force, _mass(scene, name) * scene.longest_m * square))
+        if name in scene.links and name not in guided and scene.links[name].inertia_kg_m2:
+            found.append((moment, scene.links[name].inertia_kg_m2 * square))
+    return found
 
 
 def _push(scene: Scene, motion: Motion, body: str) -> tuple[NDArray[np.complex128], Array]:

@@ -259,38 +259,10 @@ class Cost:
 
 @dataclass(frozen=True)
 class Setup:
-    """Request of a run: see `Run`, whose own fields of these names are checked against it."""
+    """Request of a run: ``steps`` of ``dt_s`` from ``start_s`` on, logged every ``every``-th.
 
-    scene: str
-    engine: str
-    version: str
-    profile: str
-    drive: Drive
-    dt_s: float
-    steps: int
-    every: int
-    start_s: float
-    reports_accelerations: bool
-    asked: Settings
-    with_forces: bool = False
-    forces_of: ForcesOf = "nothing"
-    precision: Precision = "double"
-    floor: float = AT_ROUNDING
-    unreported: Unreported = REPORTED
-
-
-@dataclass(frozen=True)
-class Run:
-    """One scene in one engine: the motion, the end, the settings and the cost.
-
-    ``gaps`` holds the opening of each pin or slider (T,) [m]. ``velocity_time_s`` and
-    ``acceleration_time_s`` are the instants of the reported velocities and accelerations.
-    ``motion`` is None where the run never started; ``stopped_at_s`` is the last time reached.
-    Requested were ``steps`` of ``dt_s`` from ``start_s`` on, logged every ``every``-th; the log is
-    checked against them. ``asked`` is the complete set of requested settings, for another run;
-    ``settings`` the engine's own after that. ``energy`` is kept for free motion, without the work
-    of loads, dampers and friction. ``with_forces`` is true if forces were requested; they are in
-    ``motion``, of the kind ``forces_of``, but those ``unreported``. ``precision`` and ``floor`` are
+    ``asked`` is the complete set of requested settings. ``with_forces`` is true if forces were
+    requested, of the kind ``forces_of``, but those ``unreported``. ``precision`` and ``floor`` are
     the engine's.
     """
 
@@ -300,6 +272,29 @@ class Run:
     profile: str
     drive: Drive
     dt_s: float
+    steps: int = 0
+    every: int = 1
+    start_s: float = 0.0
+    reports_accelerations: bool = True
+    asked: Settings = field(default_factory=dict)
+    with_forces: bool = False
+    forces_of: ForcesOf = "nothing"
+    precision: Precision = "double"
+    floor: float = AT_ROUNDING
+    unreported: Unreported = REPORTED
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run(Setup):
+    """One scene in one engine, as requested: the motion, the end, the settings and the cost.
+
+    ``settings`` are the engine's own, after those ``asked``. ``gaps`` holds the opening of each pin
+    or slider (T,) [m]. ``velocity_time_s`` and ``acceleration_time_s`` are the instants of the
+    reported velocities and accelerations. ``motion``, with the forces, is None where the run never
+    started; ``stopped_at_s`` is the last time reached. ``energy`` is kept for free motion, without
+    the work of loads, dampers and friction.
+    """
+
     status: Status
     reason: str
     settings: Settings
@@ -310,14 +305,4 @@ class Run:
     stopped_at_s: float = 0.0
     warnings: tuple[str, ...] = ()
     cost: Cost | None = None
-    asked: Settings = field(default_factory=dict)
-    start_s: float = 0.0
-    steps: int = 0
-    every: int = 1
-    reports_accelerations: bool = True
     energy: Energy | None = None
-    with_forces: bool = False
-    forces_of: ForcesOf = "nothing"
-    precision: Precision = "double"
-    floor: float = AT_ROUNDING
-    unreported: Unreported = REPORTED

@@ -223,7 +223,7 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     circles; for a cam: the way of its follower beside its law.
     """
     tracks = _tracks(scene, poses)
-    openings = {}
+    openings, slid = {}, {}
     for point, copies in tracks.items():
         places = [t.position for t in copies.values()]
         apart = [np.hypot(*(a - b).T) for i, a in enumerate(places) for b in places[i + 1 :]]
@@ -232,7 +232,8 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     for name, slider in scene.sliders.items():
         guide = _guide(slider, poses)
         seen = _Seen(slider, guide, tracks[slider.point][_rider(scene, slider)])
-        off = np.abs(seen.position[:, 1])
+        slid[name], off = seen.position.T
+        off = np.abs(off)
         body = poses.bodies.get(slider.link or pairs.block_name(slider))
         if body is not None:  # else it is a point, which keeps no angle to the line
             turn = body.theta - guide.theta - pairs.sliding_angle(slider)
@@ -245,13 +246,13 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
                 slip += factor * poses.bodies[name].theta
         openings[gear.name] = np.abs(slip) * gear.slip_m(scene.points_of)
     for cam in scene.cams.values():
-        openings[cam.name] = np.abs(lifted(scene, poses, cam))
+        openings[cam.name] = np.abs(_lifted(scene, poses, cam, slid))
     return openings
 
 
-def lifted(scene: Scene, poses: Poses, cam: CamPair) -> Array:
+def _lifted(scene: Scene, poses: Poses, cam: CamPair, slid: Mapping[str, Array]) -> Array:
     """Return the way (T,) [m] of a follower beyond its law, away from the cam; of its tip, where it
-    oscillates."""
+    oscillates. ``slid`` are the displacements of sliders."""
     theta = {name: pose.theta for name, pose in poses.bodies.items()}
     lift, lowest = cam.law_at(theta).value, cam.lowest(scene.points_of, scene.sliders)
     follower = cam.profile.follower
@@ -259,10 +260,7 @@ def lifted(scene: Scene, poses: Poses, cam: CamPair) -> Array:
         turned = cam.way * (theta[cam.follower] - theta.get(cam.carrier, 0.0) - lowest)
         beyond = np.remainder(turned - lift + np.pi, 2 * np.pi) - np.pi
         return np.asarray(beyond * (follower.arm_m or follower.pivot_m))
-    slider = scene.sliders[cam.slider]
-    track = _tracks(scene, poses)[slider.point][_rider(scene, slider)]
-    place = _Seen(slider, _guide(slider, poses), track).position[:, 0]
-    return np.asarray(place - lowest - lift)
+    return np.asarray(slid[cam.slider] - lowest - lift)
 
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:

@@ -13,7 +13,7 @@ from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 
-from models.mjcf.higher_pairs import CamRelation, as_relations
+from models.mjcf.higher_pairs import cam_relations
 from models.mjcf.tree import Tree
 from models.scene import Scene
 
@@ -23,12 +23,10 @@ class CamRelations:
 
     def __init__(self, scene: Scene, tree: Tree, model: Any, dt_s: float) -> None:
         self._dt = dt_s
-        self._cams = []
-        for pair in as_relations(scene):
-            relation = CamRelation(scene, tree, pair)
-            row = int(model.equality(f"cam {pair.name}").id)
-            joint = int(model.joint(relation.cam).qposadr[0])
-            self._cams.append((relation, row, joint))
+        self._cams = [
+            (one, int(model.equality(one.name).id), int(model.joint(one.cam).qposadr[0]))
+            for one in cam_relations(scene, tree)
+        ]
 
     def set(self, model: Any, data: Any, later_s: float = 0.0) -> None:
         """Set the parabolas about the cams' angles, or those ``later_s`` from now."""

@@ -7,7 +7,6 @@ whose control comes from `sim.engine.drive`.
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -49,7 +48,7 @@ class MujocoSession(SteppedModel):
         staged = dt_s if chosen.free and own.integrator(settings, drive) == "RK4" else 0.0
         self._loading = Loading(scene, model, self._tree.limbs, drive, state.time_s, staged)
         self._cams = CamRelations(scene, self._tree, model, dt_s)
-        self._following = self._follow
+        self._following, self._relate = self._follow, self._cams.set
         self._tendons = spring_tendons(scene, state, self._tree)
         driven, sense = driven_freedom(scene, self._tree.limbs)
         self._crank = int(model.joint(driven).dofadr[0])
@@ -63,9 +62,6 @@ class MujocoSession(SteppedModel):
     def _follow(self) -> Iterator[None]:
         with self._loading.following(), self._cams.following():
             yield
-
-    def _relate(self, data: Any) -> None:
-        self._cams.set(self._model, data)
 
     def facts(self) -> Facts:
         """Read the model as MuJoCo holds it now."""

@@ -48,6 +48,8 @@ class SteppedModel(ABC):
         self._warnings: list[str] = []
         self._following: Callable[[], AbstractContextManager[None]] = nullcontext
         """What is to be entered while MuJoCo works."""
+        self._relate: Callable[[Any, Any], None] = lambda model, data: None
+        """Sets what the model holds for one state alone."""
 
     def _hold(self, model: Any, keyframe: int | None) -> None:
         """Take a compiled model, at one of its keyframes."""
@@ -63,10 +65,6 @@ class SteppedModel(ABC):
     def _placed(self, q: Array, rate: Array, push: Array, lag_s: float) -> Mapping[str, BodyPose]:
         """Return the bodies from joint coordinates (T, nq), and their rates and accelerations
         (T, nv); the rates belong to ``lag_s`` later."""
-
-    def _relate(self, data: Any) -> None:
-        """Set what the model holds for one state alone; nothing here."""
-        del data
 
     def _controls(self, steps: int) -> Array:
         """Return the controls of each of the next steps, (steps, nu)."""
@@ -137,7 +135,7 @@ class SteppedModel(ABC):
         push, control = np.empty((len(states), model.nv)), self._control_at(at) if model.nu else ()
         for k, state in enumerate(states):
             mujoco.mj_setState(model, data, state, FULL)
-            self._relate(data)
+            self._relate(model, data)
             if model.nu:
                 data.ctrl[:] = control[k]
             mujoco.mj_forward(model, data)

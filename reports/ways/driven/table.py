@@ -24,7 +24,8 @@ def words(checked: Sequence[Checked]) -> Sequence[str]:
     """The meaning of the numbers, and how cams are held."""
     scenes = {one.cell.scene.name: one.cell.scene for one in checked}
     cams = [
-        f"{name}, cam {pair.name}: {pair.hold}."
+        f"{name}, cam {pair.name}: "
+        + (f"by contact, {pair.facets} facets." if pair.facets else "as a relation.")
         for name, scene in scenes.items()
         for pair in scene.cams.values()
     ]
