@@ -41,6 +41,7 @@ from models.scene.joints import (
     whole_turns,
 )
 from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring, Spring
+from models.scene.pairs import CamPair, Gear
 from sim.engine import (
     BodyPose,
     Drive,
@@ -67,6 +68,7 @@ __all__ = [
     "GROUND",
     "Beam",
     "BodyPose",
+    "CamPair",
     "ConstantFriction",
     "Drive",
     "Engine",
@@ -76,6 +78,7 @@ __all__ = [
     "Forces",
     "ForcesOf",
     "Frame",
+    "Gear",
     "Joints",
     "LineSpring",
     "Load",

@@ -235,6 +235,8 @@ def _refined(
     return {output: np.sort(low[rows] % cycle.period_rad) for output, rows in mine.items()}
 
 
+REST = 1e-12
+"""Extreme speed, over the largest, that is rounding: the end of a rest."""
 SAME = 1e-9
 """Distance of limit positions, over the stroke, below which they are one place."""
 
@@ -245,9 +247,9 @@ class Travel:
 
     ``low`` and ``high`` are its extremes ([rad] for a link, else [m]), ``low_at_rad`` the phase (of
     the cycle, see `analytic.mechanism.cycle`) where it first has ``low``, and ``high_at_rad`` that
-    where it next has ``high``; ``limits`` is the number of limit positions in a cycle: two, or more
-    where it turns back on its way. ``time_ratio`` is the phase of the longer stroke between the
-    extremes over that of the shorter, and so of their times.
+    where it next has ``high``; ``limits`` is the number of times that it turns back in a cycle (two
+    or more, a rest between them or not). ``time_ratio`` is the phase of the longer stroke between
+    the extremes over that of the shorter, and so of their times.
     """
 
     low: float
@@ -326,7 +328,10 @@ def _extremes(cycle: Cycle, limits: Mapping[Output, Array]) -> dict[Output, Trav
         high_at = _next(at[places >= high - same], low_at, cycle)
         again_at = _next(at[places <= low + same], high_at, cycle)
         back = (again_at - low_at) % cycle.period_rad or cycle.period_rad
-        travelled[output] = Travel(low, high, low_at, high_at, back, at.size)
+        moves = np.diff(places, append=places[0])
+        senses = np.sign(moves[np.abs(moves) > same])  # the ends of a rest are one place
+        reversals = int(np.count_nonzero(senses != np.roll(senses, 1)))
+        travelled[output] = Travel(low, high, low_at, high_at, back, reversals)
     return travelled
 
 
@@ -352,7 +357,7 @@ def extreme_speeds(
 ) -> dict[Output, tuple[ExtremeSpeed, ...]]:
     """Return by output its extreme speeds in the order of the phase, under a driver of constant
     speed or one that swings: where its acceleration changes sign, found on the closed form to
-    rounding. A constant speed has none. Raises as `analytic.mechanism.cycle.zeros`."""
+    rounding. A constant speed and a rest have none. Raises as `analytic.mechanism.cycle.zeros`."""
     cycle = Cycle.of(scene)
     found = {}
     for output, at in zeros(cycle, outputs, 2).items():
@@ -361,6 +366,7 @@ def extreme_speeds(
         found[output] = tuple(
             ExtremeSpeed(float(angle), float(rate))
             for angle, rate in zip(angles, rates, strict=True)
+            if abs(rate) > REST * np.max(np.abs(rates))
         )
     return found
 

@@ -12,9 +12,8 @@ from pydantic import Field, StrictInt, StringConstraints
 from models.errors import SceneError
 from models.files import (
     body_table,
-    cam_table,
     elastic_table,
-    gear_table,
+    pair_tables,
     schema,
     spring_table,
 )
@@ -51,8 +50,8 @@ class SceneTable(schema.Table):
     elastic: dict[Name, elastic_table.ElasticTable] = Field(
         default_factory=dict, max_length=MOST_BODIES
     )
-    cams: dict[Name, cam_table.CamTable] = Field(default_factory=dict, max_length=MOST_BODIES)
-    gears: dict[Name, gear_table.GearTable] = Field(default_factory=dict, max_length=MOST_BODIES)
+    cams: dict[Name, pair_tables.CamTable] = Field(default_factory=dict, max_length=MOST_BODIES)
+    gears: dict[Name, pair_tables.GearTable] = Field(default_factory=dict, max_length=MOST_BODIES)
 
 
 FAULTS_OF_NAMES = {
@@ -62,8 +61,8 @@ FAULTS_OF_NAMES = {
     "loads": faults_of_loads,
     "friction": spring_table.faults_of_friction,
     "springs": spring_table.faults_of_springs,
-    "gears": gear_table.faults_of_gears,
-    "cams": cam_table.faults_of_cams,
+    "gears": pair_tables.faults_of_gears,
+    "cams": pair_tables.faults_of_cams,
     "start": elastic_table.faults_of_start,
     "elastic": elastic_table.faults_of_elastic,
     "branch": body_table.faults_of_branch,
@@ -141,8 +140,8 @@ def scene_from_table(
     if impossible := [
         *elastic_table.faults_of_free_motion(scene),
         *elastic_table.faults_of_beams(scene),
-        *gear_table.faults_of_meshes(scene),
-        *cam_table.faults_of_guides(scene),
+        *pair_tables.faults_of_meshes(scene),
+        *pair_tables.faults_of_guides(scene),
     ]:
         raise SceneError(place, impossible)
     return scene
@@ -174,9 +173,9 @@ def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str,
     for name, spring in scene.springs.items():
         yield f"springs.{name}", spring_table.spring_table(spring)
     for name, gear in scene.gears.items():
-        yield f"gears.{name}", gear_table.gear_table(gear)
+        yield f"gears.{name}", pair_tables.gear_table(gear)
     for name, pair in scene.cams.items():
-        yield f"cams.{name}", cam_table.cam_table(pair)
+        yield f"cams.{name}", pair_tables.cam_table(pair)
     if scene.start:
         yield "start", elastic_table.start_table(scene.start)
     for name, own in scene.elastic.items():

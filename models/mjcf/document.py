@@ -193,7 +193,7 @@ def _equality(scene: Scene, tree: Tree) -> list[str]:
 
 def _tendons(scene: Scene, state: State, tree: Tree) -> list[str]:
     springs = forces.spring_lines(scene, forces.spring_tendons(scene, state, tree))
-    lines = [*springs, *higher_pairs.gear_tendons(scene, tree)]
+    lines = [*springs, *higher_pairs.pair_tendons(scene, tree)]
     return ["  <tendon>", *lines, "  </tendon>"] if lines else []
 
 

@@ -5,13 +5,16 @@ coordinates, a pair on a moving carrier has three bodies, and an angle is the su
 the way to a body (`models.mjcf.forces`). Its length is the slip of the pitch circles [m], so that a
 loop and a mesh are alike in softness.
 
-A cam is an ``equality/joint``: a parabola through its law about the angle of the assembled state.
-The parabola is for that angle alone; a program has to set it anew at each step. By contact it is a
-chain of capsules along its facets, and the follower a sphere or a box, that touch nothing else.
+A cam is a relation of two tendons: a parabola through its law about the angle of the assembled
+state. The parabola is for that angle alone; a program has to set it anew at each step. MuJoCo takes
+the softness of an equality from the inertias of both sides alike, without the slope between them,
+so the cam's side is as long as its follower moves at most: its angle in a joint of its own would
+leave a light cam hundreds of times too soft. By contact it is a chain of capsules along its facets,
+and the follower a sphere or a box, that touch nothing else.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from models.errors import EngineError
@@ -28,20 +31,27 @@ def tendon_name(gear: Gear) -> str:
     return f"gear {gear.name}"
 
 
-def gear_tendons(scene: Scene, tree: Tree) -> Iterator[str]:
-    """Write the tendons of the gears."""
+def pair_tendons(scene: Scene, tree: Tree) -> Iterator[str]:
+    """Write the tendons of gears, and of cams as a relation. Raises EngineError as `equalities`."""
     for gear in scene.gears.values():
         factors: dict[str, int] = {}
         for body, factor in gear.relation.items():
             for hinge in turning(tree, body)[0]:
                 factors[hinge] = factors.get(hinge, 0) + factor
         arm = gear.slip_m(scene.points_of)
-        yield f"    <fixed{attributes({'name': tendon_name(gear)})}>"
-        for hinge, factor in factors.items():
-            if factor:
-                row: AttributeRow = {"joint": hinge, "coef": arm * factor}
-                yield f"      <joint{attributes(row)}/>"
-        yield "    </fixed>"
+        yield from _fixed(tendon_name(gear), {name: arm * n for name, n in factors.items() if n})
+    for pair in as_relations(scene):
+        relation = CamRelation(scene, tree, pair)
+        yield from _fixed(f"cam {pair.name}", {relation.cam: relation.reach})
+        yield from _fixed(f"follower {pair.name}", {relation.follower: 1.0})
+
+
+def _fixed(name: str, joints: Mapping[str, float]) -> Iterator[str]:
+    """Write a fixed tendon over joints with their coefficients."""
+    yield f"    <fixed{attributes({'name': name})}>"
+    for joint, coef in joints.items():
+        yield f"      <joint{attributes({'joint': joint, 'coef': coef})}/>"
+    yield "    </fixed>"
 
 
 def equalities(scene: Scene, tree: Tree) -> Iterator[str]:
@@ -53,9 +63,9 @@ def equalities(scene: Scene, tree: Tree) -> Iterator[str]:
     for pair in as_relations(scene):
         relation = CamRelation(scene, tree, pair)
         row: AttributeRow = {"name": f"cam {pair.name}"}
-        row |= {"joint1": relation.follower, "joint2": relation.cam}
+        row |= {"tendon1": f"follower {pair.name}", "tendon2": f"cam {pair.name}"}
         row["polycoef"] = relation.coefficients(relation.cam_ref)
-        yield f"    <joint{attributes(row)}/>"
+        yield f"    <tendon{attributes(row)}/>"
 
 
 def as_relations(scene: Scene) -> list[CamPair]:
@@ -88,7 +98,8 @@ def touching(scene: Scene, body: str, softness: Attributes) -> Iterator[str]:
 
 class CamRelation:
     """Relation of the joints of ``cam`` and ``follower``, by name; the coordinates at which MuJoCo
-    counts both from 0 are ``cam_ref`` and ``follower_ref``."""
+    counts both from 0 are ``cam_ref`` and ``follower_ref``; the tendon of the cam is longer by
+    ``reach`` for each rad."""
 
     def __init__(self, scene: Scene, tree: Tree, pair: CamPair) -> None:
         self.pair, points = pair, scene.points_of
@@ -102,6 +113,7 @@ class CamRelation:
         )
         refs = {own.name: own.ref for limb in tree.limbs for own in limb.freedoms}
         self.cam_ref, self.follower_ref = refs[self.cam], refs[self.follower]
+        self.reach = max(map(abs, pair.profile.law.extremes(1)))
 
     def coefficients(self, at: float, ahead: float = 0.0) -> tuple[float, ...]:
         """Return MuJoCo's five coefficients of the parabola about a coordinate ``at`` of the cam;
@@ -109,7 +121,8 @@ class CamRelation:
         value, first, second = self.pair.lift(at)
         x = self.cam_ref - at
         constant = self.lowest + value - self.follower_ref + first * x + 0.5 * second * x * x
-        return constant + ahead * second, first + second * x, 0.5 * second, 0.0, 0.0
+        slope, bend = (first + second * x) / self.reach, 0.5 * second / self.reach**2
+        return constant + ahead * second, slope, bend, 0.0, 0.0
 
 
 def _hinge(limbs: tuple[Limb, ...], body: str, point: str, carrier: str) -> str:

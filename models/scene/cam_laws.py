@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -25,7 +25,7 @@ ORDERS = (1, 3, 5, 7)
 """Degrees of the spline of a table whose knots are its rows."""
 SLACK = 1e-9
 """Rounding in the sum of spans over a turn, of lifts over the stroke, in a jump over its peak."""
-PI = math.pi
+PI, MOST_TERMS = math.pi, 8
 
 
 class CamLift(NamedTuple):
@@ -57,12 +57,10 @@ class Peaks(NamedTuple):
     jerk: float
 
 
-@dataclass(frozen=True)
-class _Piece:
-    """y = sum of c_k t^k + size sin(rate t + phase), t from -1 at ``start`` to 1 at ``end``."""
+class _Piece(NamedTuple):
+    """y = sum of c_k t^k + size sin(rate t + phase), t from -1 at ``start`` to 1 at the end."""
 
     start: float
-    end: float
     coefficients: tuple[float, ...]
     size: float = 0.0
     rate: float = 0.0
@@ -136,10 +134,7 @@ def _spline(table: CamSegment) -> list[_Piece]:
     spline = make_interp_spline(share, lift, k, bc_type=conditions)
     middle, half = 0.5 * (share[1:] + share[:-1]), 0.5 * np.diff(share)
     terms = np.array([spline(middle, n) * half**n / math.factorial(n) for n in range(k + 1)]).T
-    return [
-        _Piece(float(a), float(b), tuple(c.tolist()))
-        for a, b, c in zip(share[:-1], share[1:], terms, strict=True)
-    ]
+    return [_Piece(a, tuple(c)) for a, c in zip(share[:-1].tolist(), terms.tolist(), strict=True)]
 
 
 def _integrated(*parts: tuple[float, float, float, float]) -> list[_Piece]:
@@ -153,51 +148,47 @@ def _integrated(*parts: tuple[float, float, float, float]) -> list[_Piece]:
         middle_speed = speed + a * w - (b / w * f * math.cos(phase) if f else 0.0)
         middle_lift = lift + middle_speed * w - 0.5 * a * w**2 - b * math.sin(phase)
         terms = (middle_lift, middle_speed * w, 0.5 * a * w**2)
-        found.append(_Piece(start, end, terms, b, f, phase + f))
+        found.append(_Piece(start, terms, b, f, phase + f))
         lift = sum(terms) + b * math.sin(phase + 2.0 * f)
         speed = middle_speed + a * w + (b / w * f * math.cos(phase + 2.0 * f) if f else 0.0)
         start = end
     return found
 
 
-def _modified_trapezoid() -> list[_Piece]:
-    """Sines of a quarter wave over 1/8 of the span each, constant parts of 1/4 between them."""
-    top, rate = 8.0 * PI / (PI + 2.0), 4.0 * PI
-    return _integrated(
-        (1 / 8, top, rate, 0.0),
-        (3 / 8, top, 0.0, 0.0),
-        (5 / 8, top, rate, PI / 2),
-        (7 / 8, -top, 0.0, 0.0),
-        (1.0, -top, rate, PI / 2),
-    )
-
-
-def _modified_sine() -> list[_Piece]:
-    """Quarter waves over 1/8 of the span at both ends, half a slow wave between them."""
-    top, rate, late = 4.0 * PI**2 / (PI + 4.0), 4.0 * PI, PI / 2
-    return _integrated((1 / 8, top, rate, 0.0), (7 / 8, top, rate / 3, late), (1, -top, rate, late))
-
-
-UNIT: Mapping[str, Callable[[], list[_Piece]]] = {
-    "dwell": lambda: [_Piece(0.0, 1.0, (0.0,))],
-    "uniform": lambda: [_Piece(0.0, 1.0, (0.5, 0.5))],
-    "parabolic": lambda: _integrated((0.5, 4.0, 0.0, 0.0), (1.0, -4.0, 0.0, 0.0)),
-    "harmonic": lambda: [_Piece(0.0, 1.0, (0.5,), 0.5, PI / 2, 0.0)],
-    "cycloidal": lambda: [_Piece(0.0, 1.0, (0.5, 0.5), 0.5 / PI, PI, 0.0)],
+TRAPEZOID, SINE = 8.0 * PI / (PI + 2.0), 4.0 * PI**2 / (PI + 4.0)
+"""Peaks of acceleration of the two modified laws."""
+UNIT: Mapping[str, list[_Piece]] = {
+    "dwell": [_Piece(0.0, (0.0,))],
+    "uniform": [_Piece(0.0, (0.5, 0.5))],
+    "parabolic": _integrated((0.5, 4.0, 0.0, 0.0), (1.0, -4.0, 0.0, 0.0)),
+    "harmonic": [_Piece(0.0, (0.5,), 0.5, PI / 2)],
+    "cycloidal": [_Piece(0.0, (0.5, 0.5), 0.5 / PI, PI)],
     # dy/dt = 15/16 (1 - t^2)^2 and 35/32 (1 - t^2)^3: odd about the middle.
-    "3-4-5": lambda: [_Piece(0.0, 1.0, (0.5, 15 / 16, 0.0, -10 / 16, 0.0, 3 / 16))],
-    "4-5-6-7": lambda: [
-        _Piece(0.0, 1.0, (0.5, 35 / 32, 0.0, -35 / 32, 0.0, 21 / 32, 0.0, -5 / 32))
-    ],
-    "modified-trapezoid": _modified_trapezoid,
-    "modified-sine": _modified_sine,
+    "3-4-5": [_Piece(0.0, (0.5, 15 / 16, 0.0, -10 / 16, 0.0, 3 / 16))],
+    "4-5-6-7": [_Piece(0.0, (0.5, 35 / 32, 0.0, -35 / 32, 0.0, 21 / 32, 0.0, -5 / 32))],
+    # Sines of a quarter wave over 1/8 of the span each, constant parts of 1/4 between them.
+    "modified-trapezoid": _integrated(
+        (1 / 8, TRAPEZOID, 4.0 * PI, 0.0),
+        (3 / 8, TRAPEZOID, 0.0, 0.0),
+        (5 / 8, TRAPEZOID, 4.0 * PI, PI / 2),
+        (7 / 8, -TRAPEZOID, 0.0, 0.0),
+        (1.0, -TRAPEZOID, 4.0 * PI, PI / 2),
+    ),
+    # Quarter waves over 1/8 of the span at both ends, half a slow wave between them.
+    "modified-sine": _integrated(
+        (1 / 8, SINE, 4.0 * PI, 0.0),
+        (7 / 8, SINE, 4.0 * PI / 3, PI / 2),
+        (1.0, -SINE, 4.0 * PI, PI / 2),
+    ),
 }
 """Rises of unit lift over unit span."""
 KINDS = (*UNIT, "table")
 
 
-def _rates(terms: Any, t: Any, sine: Any, cosine: Any, rate: Any, half: Any) -> Any:
-    """Return a polynomial and sine with three derivatives, for numbers or arrays (T,)."""
+def _rates(t: Any, of: Any, terms: Any, size: Any, rate: Any, phase: Any, half: Any) -> Any:
+    """Return lift and three derivatives in a piece or, as arrays (T,), in several."""
+    angle = rate * t + phase
+    sine, cosine = size * of.sin(angle), size * of.cos(angle)
     value = first = second = third = 0.0 * t
     for c in terms[::-1]:  # Horner's scheme for all Taylor terms at once
         third, second = third * t + second, second * t + first
@@ -240,47 +231,42 @@ class CamLaw:
 
     def scaled(self, factor: float) -> CamLaw:
         """Return the law with every lift times a factor."""
-        return CamLaw(
-            tuple(
-                replace(
-                    one,
-                    lift=factor * one.lift,
-                    points=tuple((angle, factor * lift) for angle, lift in one.points),
-                )
-                for one in self.segments
-            )
-        )
+        grown = []
+        for one in self.segments:
+            points = tuple((angle, factor * lift) for angle, lift in one.points)
+            grown.append(replace(one, lift=factor * one.lift, points=points))
+        return CamLaw(tuple(grown))
 
     @cached_property  # once for all evaluations
-    def _pieces(self) -> tuple[Array, Array, Array, Array]:
-        """Ends (n + 1,) [rad] of the pieces, coefficients (8, n), sines, half widths."""
+    def _pieces(self) -> tuple[Array, Array]:
+        """Ends (n + 1,) [rad] of the pieces; coefficients, sines, half widths (12, n) of each."""
         spans = np.array([one.span_rad for one in self.segments])
         angles = np.append(0.0, np.cumsum(spans)) * (math.tau / math.fsum(spans))
         lifts = np.append(0.0, np.cumsum([one.lift for one in self.segments[:-1]]))
         lifts -= lifts.min()
-        ends, columns, sines = [], [], []
+        ends, rows = [], []
         for k, each in enumerate(self.segments):
             table, span = each.kind == "table", angles[k + 1] - angles[k]
             lift = 1.0 if table else each.lift
-            for one in _spline(each) if table else UNIT[each.kind]():
+            for one in _spline(each) if table else UNIT[each.kind]:
                 ends.append(angles[k] + span * one.start)
-                column = lift * np.array(one.coefficients + (0.0,) * (8 - len(one.coefficients)))
-                column[0] += lifts[k]
-                columns.append(column)
-                sines.append((lift * one.size, one.rate, one.phase))
+                terms = one.coefficients + (0.0,) * (MOST_TERMS - len(one.coefficients))
+                first, *others = (lift * c for c in (*terms, one.size))
+                rows.append((lifts[k] + first, *others, one.rate, one.phase))
         ends.append(math.tau)
-        return np.array(ends), np.array(columns).T, np.array(sines).T, 0.5 * np.diff(ends)
+        half = 0.5 * np.diff(ends)
+        return np.array(ends), np.array([*np.array(rows).T, half])
 
     @cached_property
     def _rows(self) -> tuple[list[float], list[tuple[Any, ...]]]:
         """The same as plain numbers, a row each piece: an array's are read ten times as slowly."""
-        ends, terms, (size, rate, phase), half = (each.tolist() for each in self._pieces)
-        return ends, list(zip(zip(*terms, strict=True), size, rate, phase, half, strict=True))
+        ends, pieces = self._pieces
+        return ends.tolist(), [(row[:-4], *row[-4:]) for row in pieces.T.tolist()]
 
     def at(self, phi: Array) -> CamLift:
         """Return lift and derivatives at angles (T,) [rad] of any turn; in a knot those after it.
         Accurate to rounding of the stroke, over the span to the power of the derivative."""
-        ends, _, _, half = self._pieces
+        ends, (*_, half) = self._pieces
         folded = np.mod(np.asarray(phi, dtype=np.float64), math.tau)
         k = np.clip(np.searchsorted(ends, folded, side="right") - 1, 0, len(half) - 1)
         return self._in(k, np.clip((folded - ends[k]) / half[k] - 1.0, -1.0, 1.0))
@@ -290,18 +276,13 @@ class CamLaw:
         ends, rows = self._rows
         folded = phi % math.tau
         k = min(bisect_right(ends, folded), len(rows)) - 1
-        terms, size, rate, phase, half = rows[k]
-        t = min((folded - ends[k]) / half - 1.0, 1.0)
-        angle = rate * t + phase
-        sine, cosine = size * math.sin(angle), size * math.cos(angle)
-        return tuple(_rates(terms, t, sine, cosine, rate, half))
+        t = min((folded - ends[k]) / rows[k][-1] - 1.0, 1.0)
+        return tuple(_rates(t, math, *rows[k]))
 
     def _in(self, k: NDArray[np.intp], t: Array) -> CamLift:
         """Lift and derivatives in pieces ``k`` at their own ``t``, between -1 and 1."""
-        _, terms, (size, rate, phase), half = self._pieces
-        angle = rate[k] * t + phase[k]
-        sine, cosine = size[k] * np.sin(angle), size[k] * np.cos(angle)
-        return CamLift(*_rates(terms[:, k], t, sine, cosine, rate[k], half[k]))
+        pieces = self._pieces[1][:, k]
+        return CamLift(*_rates(t, np, pieces[:-4], *pieces[-4:]))
 
     @property
     def knots_rad(self) -> tuple[float, ...]:
@@ -311,7 +292,7 @@ class CamLaw:
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
         """Knots at which lift, velocity, acceleration or jerk jump, and by how much."""
-        ends, terms, _, half = self._pieces
+        ends, (*terms, _, _, _, half) = self._pieces
         count, size = np.arange(len(half)), np.abs(terms).max()
         ending, beginning = (self._in(count, np.full(len(half), t)) for t in (1.0, -1.0))
         steps = []
@@ -337,18 +318,17 @@ class CamLaw:
         return tuple(map(self._extremes_of, range(4)))
 
     def _extremes_of(self, order: int) -> tuple[float, float]:
-        _, terms, (size, rate, phase), half = self._pieces
         found = []
-        for k in range(len(half)):
+        for k, (terms, size, rate, phase, _) in enumerate(self._rows[1]):
             turning = [-1.0, 1.0]
-            if size[k] == 0.0:
-                slope = np.polynomial.Polynomial(terms[:, k]).deriv(order + 1)
+            if size == 0.0:
+                slope = np.polynomial.Polynomial(terms).deriv(order + 1)
                 roots = slope.trim().roots() if np.any(slope.coef) else np.zeros(0)
                 turning += [r.real for r in np.atleast_1d(roots) if abs(r.imag) < 1e-7]
             else:  # the sine's own; the polynomial beside it is straight, but in lift and velocity
                 quarter = 0.5 * PI * (order + 1)
-                waves = range(math.floor(-rate[k] / PI) - 4, math.ceil(rate[k] / PI) + 5)
-                turning += [(n * PI - phase[k] - quarter) / rate[k] for n in waves]
+                waves = range(math.floor(-rate / PI) - 4, math.ceil(rate / PI) + 5)
+                turning += [(n * PI - phase - quarter) / rate for n in waves]
             inside = np.array([t for t in turning if abs(t) <= 1.0])
             found.append(self._in(np.full(len(inside), k), inside)[order])
         return float(min(map(np.min, found))), float(max(map(np.max, found)))
@@ -356,7 +336,8 @@ class CamLaw:
     @property
     def stroke(self) -> float:
         """Difference of the largest and the least lift [m or rad]."""
-        return -float(np.subtract(*self.extremes(0)))
+        low, high = self.extremes(0)
+        return high - low
 
     def peaks(self) -> Peaks:
         """Return the peaks over a turn."""

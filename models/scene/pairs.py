@@ -13,24 +13,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.array import Array
+from models.scene.cam_laws import CamLift
 from models.scene.cams import Cam
 
+if TYPE_CHECKING:
+    from models.scene import Slider
+
 Points = Mapping[str, tuple[float, float]]
-
-
-class Slides(Protocol):
-    """Line of a slider in the frame of its guide."""
-
-    @property
-    def through_m(self) -> tuple[float, float]: ...
-
-    @property
-    def direction_rad(self) -> float: ...
 
 
 def shared_point(points: Mapping[str, Points], body: str, carrier: str) -> str:
@@ -81,9 +75,13 @@ class CamPair:
         """Sense in which its law counts the angle of the cam, +1 counter-clockwise."""
         return self.profile.sense * (1 if self.slider else self.side)
 
-    def law_angle(self, cam_rad: Array, carrier_rad: Array) -> Array:
+    def law_angle(self, cam_rad: Array, carrier_rad: Array | float) -> Array:
         """Return the angle of its law (T,) [rad] at angles of cam and carrier."""
         return np.asarray(self.sense * (cam_rad - carrier_rad - self.start_rad))
+
+    def law_at(self, theta: Mapping[str, Array]) -> CamLift:
+        """Return its law at the angles of bodies (T,) [rad]; the ground has none."""
+        return self.profile.law.at(self.law_angle(theta[self.cam], theta.get(self.carrier, 0.0)))
 
     def lift(self, turned_rad: float) -> tuple[float, float, float]:
         """Return the follower's coordinate beyond its lowest, and its first two derivatives by the
@@ -99,7 +97,7 @@ class CamPair:
         centre = shared_point(points, self.cam, self.carrier)
         return centre, "" if self.slider else shared_point(points, self.follower, self.carrier)
 
-    def lowest(self, points: Mapping[str, Points], sliders: Mapping[str, Slides]) -> float:
+    def lowest(self, points: Mapping[str, Points], sliders: Mapping[str, Slider]) -> float:
         """Return the follower's coordinate at lift 0: the displacement of its slider [m], or the
         angle of its link against the carrier [rad]. Raises ValueError as `pivots`."""
         centre, pivot = self.pivots(points)

@@ -248,11 +248,9 @@ def _closing(scene: Scene, pair: CamPair, reference: Motion) -> float:
     driver, with the rate s' of the lift, M s' over the inertia beyond the least."""
     if scene.is_free:
         return 0.0
-    carrier = reference.links.get(pair.carrier)
-    base = np.zeros_like(reference.time_s) if carrier is None else carrier.theta
-    lift = pair.profile.law.at(pair.law_angle(reference.links[pair.cam].theta, base)).value
+    lift = pair.law_at({name: link.theta for name, link in reference.links.items()})
     machine = reduced_machine(scene, reference.time_s)
-    rate = np.gradient(lift, machine.theta)
+    rate = np.gradient(lift.value, machine.theta)
     moved = machine.inertia - np.nanmin(machine.inertia)
     fast = (np.abs(rate) > 0.5 * np.nanmax(np.abs(rate))) & (moved > 0.0)
     return _largest(-machine.torque[fast] * rate[fast] / moved[fast])

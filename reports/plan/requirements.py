@@ -14,8 +14,8 @@ from analytic.free.free_motion import loosened
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, EngineError, nearest, shown
 from models.files import reading
-from models.files.cam_table import LEAST_FACETS, MOST_FACETS
 from models.files.inputs import names_in
+from models.files.pair_tables import LEAST_FACETS, MOST_FACETS
 from models.files.reading import kinds, shipped
 from models.scene import Scene
 from models.scene.cut_links import with_rigid_links

@@ -15,9 +15,10 @@ from models.scene import joints as pairs
 from models.scene.joints import Frame, Prism, Slot, turned
 from sim.box2d import DECLARATION
 from sim.box2d import settings as own
-from sim.engine import Drive, Engine, Facts, Settings
+from sim.engine import Drive, Facts, Settings
 from sim.engine.acting import Push, Pushes
 from sim.engine.heavy_driver import HeavyDriverSession
+from sim.engine.settings import shipped_engine
 from sim.engine.ties import Hinge, RubbingJoint, hinges, refuse_driver_angle, refuse_massless
 
 b2: Any = import_module("pyb2d3")  # ships no stubs
@@ -213,18 +214,11 @@ def rotation(angle: float) -> Any:
     return turned_by
 
 
-ENGINE = Engine(
-    "box2d",
-    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
-    version=lambda: VERSION,
-    check=own.checked,
-    open=Box2dSession,
-    reports_accelerations=False,
+ENGINE = shipped_engine(
+    own,
+    VERSION,
+    Box2dSession,
     in_seconds=lambda settings: () if settings["joint_swings"] else ("joint_swings",),
-    forces_of="steps",
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
     precision=DECLARATION.precision,
     floor=1.4e-6,
 )

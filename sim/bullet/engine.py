@@ -28,8 +28,9 @@ from models.scene import joints as pairs
 from models.scene.joints import Frame, less, turned
 from models.scene.loads import ConstantFriction
 from sim.bullet import settings as own
-from sim.engine import Drive, Engine, Facts, Settings
+from sim.engine import Drive, Facts, Settings
 from sim.engine.acting import Pushes
+from sim.engine.settings import shipped_engine
 from sim.engine.ties import refuse_driver_angle, refuse_massless
 from sim.engine.tree_session import TreeSession
 
@@ -261,16 +262,4 @@ def loosened(scene: Scene, where: Mapping[str, Frame], tree: Tree, *but: str) ->
     return Tree(tuple(limbs), tuple(closures))
 
 
-ENGINE = Engine(
-    "bullet",
-    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
-    version=lambda: VERSION,
-    check=own.checked,
-    open=BulletSession,
-    reports_accelerations=False,
-    in_seconds=own.in_seconds,
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
-    forces_of="steps",
-)
+ENGINE = shipped_engine(own, VERSION, BulletSession, in_seconds=own.in_seconds)

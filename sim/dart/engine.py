@@ -15,8 +15,9 @@ from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from sim.dart import settings as own
-from sim.engine import Drive, Engine, Facts, Settings
+from sim.engine import Drive, Facts, Settings
 from sim.engine.acting import Pushes
+from sim.engine.settings import shipped_engine
 from sim.engine.ties import refuse_massless
 from sim.engine.tree_session import TreeSession
 
@@ -220,16 +221,4 @@ def matter(mass: float, inertia: float, centre: Point) -> Any:
     return dartpy.dynamics.Inertia(max(mass, TRIFLE), [*centre, 0.0], about)
 
 
-ENGINE = Engine(
-    "dart",
-    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
-    version=lambda: VERSION,
-    check=own.checked,
-    open=DartSession,
-    reports_accelerations=False,
-    in_seconds=lambda settings: (),
-    forces_of="steps",
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
-)
+ENGINE = shipped_engine(own, VERSION, DartSession)

@@ -22,8 +22,9 @@ from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from sim.drake import settings as own
-from sim.engine import Drive, Engine, Facts, Settings
+from sim.engine import Drive, Facts, Settings
 from sim.engine.acting import Pushes
+from sim.engine.settings import shipped_engine
 from sim.engine.ties import refuse_driver_angle, refuse_massless, refuse_pin_friction
 from sim.engine.tree_session import TreeSession
 
@@ -215,16 +216,4 @@ def space(place: Point) -> Array:
     return np.array([*place, 0.0])
 
 
-ENGINE = Engine(
-    "drake",
-    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
-    version=lambda: VERSION,
-    check=own.checked,
-    open=opened,
-    reports_accelerations=False,
-    in_seconds=lambda settings: (),
-    forces_of="steps",
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
-)
+ENGINE = shipped_engine(own, VERSION, opened)

@@ -252,19 +252,17 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
 def lifted(scene: Scene, poses: Poses, cam: CamPair) -> Array:
     """Return the way (T,) [m] of a follower beyond its law, away from the cam; of its tip, where it
     oscillates."""
-    theta = {GROUND: np.zeros(len(poses.time_s))}
-    theta |= {name: pose.theta for name, pose in poses.bodies.items()}
-    lift = cam.profile.law.at(cam.law_angle(theta[cam.cam], theta[cam.carrier]))
-    lowest = cam.lowest(scene.points_of, scene.sliders)
+    theta = {name: pose.theta for name, pose in poses.bodies.items()}
+    lift, lowest = cam.law_at(theta).value, cam.lowest(scene.points_of, scene.sliders)
     follower = cam.profile.follower
     if isinstance(follower, OscillatingFollower):
-        turned = cam.way * (theta[cam.follower] - theta[cam.carrier] - lowest)
-        beyond = np.remainder(turned - lift.value + np.pi, 2 * np.pi) - np.pi
+        turned = cam.way * (theta[cam.follower] - theta.get(cam.carrier, 0.0) - lowest)
+        beyond = np.remainder(turned - lift + np.pi, 2 * np.pi) - np.pi
         return np.asarray(beyond * (follower.arm_m or follower.pivot_m))
     slider = scene.sliders[cam.slider]
     track = _tracks(scene, poses)[slider.point][_rider(scene, slider)]
     place = _Seen(slider, _guide(slider, poses), track).position[:, 0]
-    return np.asarray(place - lowest - lift.value)
+    return np.asarray(place - lowest - lift)
 
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:

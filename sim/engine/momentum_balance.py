@@ -137,36 +137,27 @@ class _System:
 
     def couple(self, shares: Mapping[str, float]) -> None:
         """Add torques on bodies in these ratios."""
-        column = self._column()
-        for name, share in shares.items():
-            if name != GROUND:
-                column[:, self._row[name] + 2] += share
+        self._column()
+        self._turn(shares)
 
     def lift(self, scene: Scene, cam: CamPair) -> None:
         """Add a cam: a force along the way of its follower, or a moment, and the couple on the cam
         that has its power."""
         if cam.slider:
-            slide = slide_of(scene, cam.slider)
-            self._push_on(scene, slide.slider, pairs.riding_body(slide), self._along(slide.slider))
+            self._push_along(scene, cam.slider)
         else:
             self.couple({cam.follower: 1.0, cam.carrier: -1.0})
-        none = np.zeros(self._samples)
-        turned, base = (
-            self._gains[body].theta if body != GROUND else none for body in (cam.cam, cam.carrier)
-        )
-        ratio = cam.way * cam.sense * cam.profile.law.at(cam.law_angle(turned, base)).first
-        for name, sense in ((cam.cam, -1.0), (cam.carrier, 1.0)):
-            if name != GROUND:
-                self._columns[-1][:, self._row[name] + 2] += sense * ratio
+        lift = cam.law_at({name: gain.theta for name, gain in self._gains.items()})
+        ratio = cam.way * cam.sense * lift.first
+        self._turn({cam.cam: -ratio, cam.carrier: ratio})
 
     def drive(self, scene: Scene) -> None:
         """Add the driver: a torque between its bodies, or a force along its slider's line."""
         driver = scene.driver
         if driver.slider is None:
             self.couple({driver.link: 1.0, driver.base: -1.0})
-            return
-        slide = slide_of(scene, driver.slider)
-        self._push_on(scene, slide.slider, pairs.riding_body(slide), self._along(slide.slider))
+        else:
+            self._push_along(scene, driver.slider)
 
     def solution(self) -> Array:
         """Solve for the unknowns (T, unknowns): NaN where the joints are singular; of least size
@@ -191,6 +182,11 @@ class _System:
         theta = np.zeros(self._samples) if guide is None else guide.theta
         return directions(slider.direction_rad + theta)
 
+    def _push_along(self, scene: Scene, slider: str) -> None:
+        """Add an unknown along the line of a slider."""
+        slide = slide_of(scene, slider)
+        self._push_on(scene, slide.slider, pairs.riding_body(slide), self._along(slide.slider))
+
     def _push_on(self, scene: Scene, slider: Slider, rider: str, direction: Array) -> None:
         """Add an unknown that pushes the sliding body at its point, and the guide back."""
         own, guide, column = self._gains[rider], self._gains.get(slider.on), self._column()
@@ -202,6 +198,12 @@ class _System:
     def _column(self) -> Array:
         self._columns.append(np.zeros((self._samples, 3 * len(self._row))))
         return self._columns[-1]
+
+    def _turn(self, torques: Mapping[str, Array | float]) -> None:
+        """Add torques on bodies to the last unknown."""
+        for name, torque in torques.items():
+            if name != GROUND:
+                self._columns[-1][:, self._row[name] + 2] += torque
 
     def _push(self, column: Array, body: str, arm: Array, direction: Array) -> None:
         row = self._row[body]

@@ -1,9 +1,12 @@
-"""Settings of a run: a profile's, overridden one by one."""
+"""Settings of a run: a profile's, overridden one by one; and engines that come with settings."""
 
 from collections.abc import Callable, Mapping
+from typing import Any, Protocol
 
 from models.errors import EngineError, nearest, shown
-from sim.engine import Engine, Profile, Settings, SettingValue
+from models.motion import State
+from models.scene import Scene
+from sim.engine import Drive, Engine, Profile, Session, Settings, SettingValue
 
 
 class SettingError(EngineError):
@@ -92,3 +95,39 @@ def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:
         return converted
     need = {int: "a whole number", float: "a number", str: "text"}[kind]
     raise SettingError(f"setting {name}: found {shown(value)}; it takes {need}, such as {model!r}")
+
+
+class OwnSettings(Protocol):
+    """Module of the settings of a shipped engine."""
+
+    AS_SHIPPED: Profile
+    TUNED: Profile
+
+    @property
+    def checked(self) -> Callable[[Settings], None]: ...
+
+
+def shipped_engine(
+    own: OwnSettings,
+    version: str,
+    session: Callable[[Scene, State, Settings, float, Drive], Session],
+    *,
+    of_states: bool = False,
+    **more: Any,
+) -> Engine:
+    """Declare an engine that comes with crankcheck: all apply loads, constant friction and springs.
+    It reports forces and accelerations ``of_states``, or else forces of steps alone; ``more`` are
+    other fields, by default without settings in seconds."""
+    return Engine(
+        own.TUNED.engine,
+        {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
+        version=lambda: version,
+        check=own.checked,
+        open=session,
+        reports_accelerations=of_states,
+        forces_of="states" if of_states else "steps",
+        applies_loads=True,
+        applies_constant_friction=True,
+        applies_springs=True,
+        **{"in_seconds": lambda settings: (), **more},
+    )

@@ -10,11 +10,11 @@ from models.array import Array
 from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
-from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings, measure
+from sim.engine import BodyPose, Drive, Facts, Log, Poses, Settings, measure
+from sim.engine.settings import shipped_engine
 from sim.exudyn import acting, crank_drive, system
-from sim.exudyn.cam_relations import add_cam
-from sim.exudyn.meshes import add_mesh
-from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, of_rigid, placing
+from sim.exudyn import settings as own_settings
+from sim.exudyn.higher_pairs import add_cam, add_gear
 from sim.exudyn.solver import Multipliers, held, initialized, multipliers, per_drive, simulation
 
 LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
@@ -76,14 +76,14 @@ class ExudynSession:
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> None:
-        checked(settings)
+        own_settings.checked(settings)
         if dt_s < LEAST_DT_S:
             raise EngineError(
                 f"dt: found {dt_s:g} s; exudyn ends a step to 1e-10 s, so it takes "
                 f"{LEAST_DT_S:g} s or more"
             )
         crank_drive.driven_coordinate(scene, drive)  # refuses
-        settings = of_drive(settings, drive)
+        settings = own_settings.of_drive(settings, drive)
         self._scene, self._settings, self._dt = scene, settings, dt_s
         self._start_s, self._done = state.time_s, 0
         self._heard: list[str] = []
@@ -91,7 +91,7 @@ class ExudynSession:
             self._model = system.build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
             for gear in scene.gears.values():
-                add_mesh(self._model, gear)
+                add_gear(self._model, gear)
             for cam in scene.cams.values():
                 add_cam(self._model, cam)
             self._looked = dict(self._model.looked)
@@ -146,7 +146,7 @@ class ExudynSession:
         loads = [self._system.GetLoad(load)["loadVector"] for load in model.weights]
         x, y, _ = loads[0] if loads else (0.0, 0.0, 0.0)
         beams = system.held_beams(model)
-        settings = self._settings if beams else of_rigid(self._settings)
+        settings = self._settings if beams else own_settings.of_rigid(self._settings)
         return Facts(
             version=system.VERSION,
             mass_kg=masses | system.node_masses(beams),
@@ -235,19 +235,15 @@ class ExudynSession:
         return ""
 
 
-ENGINE = Engine(
-    "exudyn",
-    {"as-shipped": AS_SHIPPED, "tuned": TUNED},
-    version=lambda: system.VERSION,
-    check=checked,
-    open=ExudynSession,
-    holds=lambda settings, dt_s, drive: of_rigid(of_drive(settings, drive)),
-    placing=placing,
-    in_seconds=lambda settings: (),
-    forces_of="states",
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
+ENGINE = shipped_engine(
+    own_settings,
+    system.VERSION,
+    ExudynSession,
+    of_states=True,
+    holds=lambda settings, dt_s, drive: own_settings.of_rigid(
+        own_settings.of_drive(settings, drive)
+    ),
+    placing=own_settings.placing,
     applies_gears=True,
     applies_cams=True,
     applies_beams=True,

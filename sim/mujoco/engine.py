@@ -18,9 +18,9 @@ from models.mjcf.forces import SpringTendon, planned, spring_tendons
 from models.mjcf.tree import Tree, driven_freedom, plan
 from models.motion import State
 from models.scene import Scene
-from sim.engine import BodyPose, Drive, Engine, Facts, Log, Settings, SettingValue
+from sim.engine import BodyPose, Drive, Facts, Log, Settings, SettingValue
 from sim.engine import drive as drives
-from sim.engine.settings import SettingError
+from sim.engine.settings import SettingError, shipped_engine
 from sim.engine.tree_poses import body_poses
 from sim.mujoco import settings as own
 from sim.mujoco.cam_relations import CamRelations
@@ -169,18 +169,13 @@ def _tree(scene: Scene, state: State, chosen: options.Writing) -> Tree:
         raise SettingError(f"setting {error}; by default {able}") from None
 
 
-ENGINE = Engine(
-    "mujoco",
-    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
-    version=lambda: VERSION,
-    check=own.checked,
-    open=MujocoSession,
+ENGINE = shipped_engine(
+    own,
+    VERSION,
+    MujocoSession,
+    of_states=True,
     holds=own.holds,
     in_seconds=own.in_seconds,
-    forces_of="states",
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
     applies_gears=True,
     applies_cams=True,
     applies_cams_by_contact=True,

@@ -11,10 +11,10 @@ import pymunk.batch
 from models.array import Array
 from models.motion import State
 from models.scene import Point, Scene, laws
-from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
+from sim.engine import Drive, Facts, Log, Poses, Settings
 from sim.engine import drive as drives
 from sim.engine.measure import centred
-from sim.engine.settings import as_held
+from sim.engine.settings import as_held, shipped_engine
 from sim.pymunk import settings as own
 from sim.pymunk.acting import SpaceActing
 from sim.pymunk.arcs import Arcs
@@ -230,18 +230,11 @@ def _sum(a: Point, b: Point) -> Point:
     return a[0] + b[0], a[1] + b[1]
 
 
-ENGINE = Engine(
-    "pymunk",
-    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
-    version=lambda: VERSION,
-    check=own.checked,
-    open=PymunkSession,
-    reports_accelerations=False,
+ENGINE = shipped_engine(
+    own,
+    VERSION,
+    PymunkSession,
     in_seconds=own.in_seconds,
-    forces_of="steps",
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
     applies_gears=True,
     applies_cams=True,
     applies_cams_by_contact=True,

@@ -8,7 +8,7 @@ import numpy as np
 import pymunk
 
 from models.array import Array
-from models.scene import GROUND
+from models.scene import GROUND, Point
 from models.scene import joints as pairs
 from models.scene.joints import End, Frame
 from models.scene.loads import LineSpring, PinSpring, SlideSpring
@@ -31,6 +31,12 @@ class SpaceBodies(EngineBodies):
     def body(self, name: str) -> pymunk.Body:
         """Return a body or the ground."""
         return self.space.static_body if name == GROUND else self.bodies[name]
+
+    def at(self, name: str, point: str) -> Point:
+        """Return a point of a body in the plane [m]."""
+        local = self.from_centre(name, pairs.local_point(self.scene, name, point))
+        place = self.body(name).local_to_world(local)
+        return place.x, place.y
 
 
 WHOLE = 1.0 - 1e-9

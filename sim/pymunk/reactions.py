@@ -101,7 +101,7 @@ class Reactions:
         forces = forces.each_series(_with_start).stretch(slice(0, len(time_s)))
         scene = self._scene
         rolling = scene.cams or any(gear.carrier != GROUND for gear in scene.gears.values())
-        if not len(ends) or pushes.spare or rolling:  # which press on pins (`sim.pymunk.meshes`)
+        if not len(ends) or pushes.spare or rolling:  # which press on pins (`sim.pymunk.rolling`)
             return replace(forces, time_s=time_s)
         turn = float(np.nanmax(np.abs(after[:, :, 5]))) * self._dt if self._bent else 0.0
         against = tuple(self._contradictions(pushes, ends, SAME + turn**2))

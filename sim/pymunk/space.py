@@ -29,8 +29,7 @@ from sim.engine import Drive
 from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless
 from sim.pymunk import native
 from sim.pymunk.cam_contacts import add_contact
-from sim.pymunk.cam_lines import CamLine
-from sim.pymunk.meshes import mesh
+from sim.pymunk.rolling import cam_line, mesh
 
 
 @dataclass(frozen=True)
@@ -139,7 +138,7 @@ def build(
         if cam.facets:
             add_contact(placed, cam, k)
         else:
-            _add(placed, CamLine(scene, placed, cam, dt_s).joint())
+            _add(placed, cam_line(placed, cam, dt_s))
     rubs = native.pin_friction(placed)
     springs = native.native_springs(placed, _reach(scene)) if with_springs else {}
     _add(placed, *(one.motor for one in rubs), *(one.constraint for one in springs.values()))

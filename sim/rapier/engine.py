@@ -12,9 +12,10 @@ from models.motion import State
 from models.scene import GROUND, Scene
 from models.scene import joints as pairs
 from models.scene.joints import End, Frame, Prism, Slot
-from sim.engine import Drive, Engine, Facts, Settings
+from sim.engine import Drive, Facts, Settings
 from sim.engine.acting import Push, Pushes
 from sim.engine.heavy_driver import HeavyDriverSession
+from sim.engine.settings import shipped_engine
 from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless, slide_of
 from sim.rapier import DECLARATION
 from sim.rapier import settings as own
@@ -204,18 +205,4 @@ def rotation(angle: float) -> Any:
     return rp.Rotation3(math.cos(0.5 * angle), 0.0, 0.0, math.sin(0.5 * angle))
 
 
-ENGINE = Engine(
-    "rapier",
-    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
-    version=lambda: VERSION,
-    check=own.checked,
-    open=RapierSession,
-    reports_accelerations=False,
-    in_seconds=lambda settings: (),
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
-    precision=DECLARATION.precision,
-    floor=2e-6,
-    forces_of="steps",
-)
+ENGINE = shipped_engine(own, VERSION, RapierSession, precision=DECLARATION.precision, floor=2e-6)

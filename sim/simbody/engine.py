@@ -13,8 +13,9 @@ from models.scene import Scene
 from models.scene import joints as pairs
 from models.scene.joints import Frame
 from models.scene.laws import ConstantSpeed
-from sim.engine import Drive, Engine, Facts, Poses, Settings
+from sim.engine import Drive, Facts, Poses, Settings
 from sim.engine.acting import Acting, Pushes
+from sim.engine.settings import shipped_engine
 from sim.engine.ties import refuse_driver_angle, refuse_massless, refuse_pin_friction
 from sim.engine.tree_session import TreeSession
 from sim.simbody import model as made
@@ -200,17 +201,6 @@ class SimbodySession(TreeSession):
         return self.facts_of(made.VERSION, matter, centre, (gravity.get(0), gravity.get(1)), {})
 
 
-ENGINE = Engine(
-    "simbody",
-    {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
-    version=lambda: made.VERSION,
-    check=own.checked,
-    open=SimbodySession,
-    placing=own.placing,
-    order=4,
-    in_seconds=lambda settings: (),
-    forces_of="states",
-    applies_loads=True,
-    applies_constant_friction=True,
-    applies_springs=True,
+ENGINE = shipped_engine(
+    own, made.VERSION, SimbodySession, of_states=True, placing=own.placing, order=4
 )

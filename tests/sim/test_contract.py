@@ -30,11 +30,11 @@ REFUSED = {
 }
 """Scenes that an engine refuses in one clause alone: friction in the pin that closes its loop, or
 in all pins."""
-DECLARED = "placing", "in_seconds", "floor", "forces_of", "applies_constant_friction"
+DECLARED = "placing", "in_seconds", "floor", "forces_of", "applies_"
 """Declarations by which a clause does not apply."""
 QUICK = (*FULL, "rapier", "box2d", "dart")
 """Engines that install in a minute."""
-AT_LENGTH = ("EC37", "EC53", "EC54", "EC55", "EC61", "EC85", "EC86", "EC92", "EC93", "EC94")
+AT_LENGTH = ("EC37", "EC53", "EC54", "EC55", "EC57", "EC61", "EC85", "EC86", "EC92", "EC93", "EC94")
 """Clauses that take long in these, on what they share or what others show too."""
 
 

@@ -497,6 +497,11 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0)),
     "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(1.0)),
     "slowed": ("EC55", "without gravity, the centres of mass move", meddling(_damped(1e-9))),
+    "slips": (
+        "EC57", "planetary: Q is off by",
+        of_exudyn(_with_scene(lambda scene: replace(scene, gears={
+            name: replace(gear, teeth=(gear.teeth[0], gear.teeth[1] + 2))
+            for name, gear in scene.gears.items()})))),
     "at home": ("EC61", "moved by (3, -2) m", meddling(record_=_at_home)),
     "blunt": ("EC71", "open raised KeyError: 'motor'", meddling(_blunt)),
     "another motion": ("EC81", "logs another motion", of_exudyn(forces_=_shaken)),

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from models.files.cam_table import MOST_SEGMENTS, SegmentTable, law_of
+from models.files.pair_tables import MOST_SEGMENTS, SegmentTable, law_of
 from models.files.schema import Degrees, Name, NonNegative, Number, Positive, Table
 from models.files.schema import Text as NoteText
 from models.lectures.shipped_tables import Source, find_table, read_table

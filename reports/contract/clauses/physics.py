@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic.structure.mobility import sides_of
 from models.array import Array
+from models.files.reading import load_scene
 from models.scene import Same, Scene
 from models.scene.joints import bodies, centre_of
 from models.scene.laws import ConstantSpeed, Oscillating
@@ -42,6 +43,9 @@ FALL = 0.2
 FALL_OFF = 0.1
 """Largest difference of a free motion to that of the equations, over its size: far above the effect
 of steps and of joints that give way, far below a body without weight or with another's mass."""
+
+PAIR_OFF = 0.01
+"""Largest error of place in a turn: far above that of steps, far below that of another ratio."""
 
 
 @clause(
@@ -233,6 +237,27 @@ def _centres(scene: Scene, poses: Poses, sample: int) -> Array:
         c, s = math.cos(body.theta[sample]), math.sin(body.theta[sample])
         rows.append(body.origin[sample] + np.array([c * x - s * y, s * x + c * y]))
     return np.array(rows)
+
+
+@clause(
+    "EC57",
+    "gears and cams that the engine takes hold their ratio and their law",
+    "A pair that slips, or has another sign, is a mechanism of another motion.",
+    "Hold scene.gears by the relation that Gear.relation has, scene.cams by CamPair.lift at each "
+    "step; or set Engine.applies_gears, applies_cams to False.",
+    of_scenes=False,
+)
+def _pairs(subject: Subject) -> Iterator[str]:
+    takes_gears, takes_cams = subject.engine.applies_gears, subject.engine.applies_cams
+    names = ("gear-train", "planetary") * takes_gears + ("cam-roller", "cam-rocker") * takes_cams
+    if not names:
+        raise NotTriedError("applies_gears and applies_cams say that it takes none")
+    for name in names:
+        worst, fault = _worst_place(subject.in_scene(load_scene(name)), STEPS[1])
+        if worst is None:
+            yield f"{name}: {fault}"
+        elif not worst.pure <= subject.beyond(PAIR_OFF):
+            yield f"{name}: {worst.body} is off by {worst.pure:.2g} after a turn"
 
 
 CHANGES: Mapping[str, Callable[[Scene], Scene]] = {

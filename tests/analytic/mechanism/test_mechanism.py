@@ -282,3 +282,20 @@ def test_time_ratio_of_one_that_turns_back_on_its_way_is_between_the_outermost()
     assert (rod.limits, ram.limits) == (4, 2)
     assert rod.time_ratio == pytest.approx(ram.time_ratio, rel=1e-12)
     assert rod.period_rad == pytest.approx(math.pi, rel=1e-12)
+
+
+def test_a_rest_is_neither_a_reversal_nor_an_extreme_speed() -> None:
+    roller = load_scene("cam-roller")
+    lift, stop = roller.cams["disc"].profile.law.segments[:2]
+    part = replace(lift, lift=0.5 * lift.lift, span_rad=0.5 * lift.span_rad)
+    pause = replace(stop, span_rad=0.5 * stop.span_rad)
+    segments = (part, pause, part, pause, *roller.cams["disc"].profile.law.segments[2:])
+    pair = roller.cams["disc"]
+    profile = replace(pair.profile, law=replace(pair.profile.law, segments=segments))
+    stepped = replace(roller, cams={"disc": replace(pair, profile=profile)})
+    for scene, rises in ((roller, 1), (stepped, 2)):
+        assert travel(scene, "guide").limits == 2
+        rates = [one.rate for one in extreme_speeds(scene, ["guide"])["guide"]]
+        # 15/8 of the mean speed (3-4-5), 2 (cycloidal); Norton, Design of Machinery, table 8-3
+        ups = [1.875 * 0.02 / math.radians(120.0)] * rises
+        assert rates == pytest.approx([*ups, -2.0 * 0.02 / math.radians(120.0)], rel=1e-12)
