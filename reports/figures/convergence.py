@@ -26,12 +26,13 @@ from reports.figures.drawing import Mark, around, ends, fitted, marks, measured
 from reports.figures.sheet import Panels, grid, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
 from reports.output.numbers import duration
-from reports.protocol.length import SECONDS, TURNS, common_clock
+from reports.protocol.length import FACETS, SECONDS, TURNS, common_clock
 from reports.results.lines import Line, Named, named
 from reports.results.overview import Report, notes
 
 STEP, TIME = "time step [s]", "time step"
 PER_TURN = "steps per turn"
+SIDES_OF = "facets of the cam"
 STRIP = "#f0f0f0"
 ALONG = 60
 """Points along the curve of a fit."""
@@ -52,7 +53,7 @@ def draw(report: Report, scene: str) -> Figure:
     if strip:
         right: dict[str, Any] = {"ha": "right", "va": "center", "transform": axes.transAxes}
         axes.text(-0.02, 1.0 - strip / 2, "failed", size=SMALL, **right)
-    over = _over(own)
+    over = _over(report, own)
     axes.set_xlabel(over.label)
     axes.set_ylabel(_error_of(own))
     over.ticks(axes, own)
@@ -69,7 +70,7 @@ def draw_all(report: Report) -> Figure:
     if strip:
         entries.append((Rectangle((0, 0), 1, 1, fc=STRIP), "strip along the top: failed"))
     mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
-    over = _over(lines)
+    over = _over(report, lines)
     labels = (over.label_of_all, _error_of(lines))
     figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
     _limits(axes, lines, over.unit_s)
@@ -82,8 +83,16 @@ def draw_all(report: Report) -> Figure:
     return figure
 
 
-def _over(lines: Sequence[Line]) -> Over:
-    return OVER[common_clock(line.drive for line in lines)]
+def draw_over_facets(report: Report) -> Figure | None:
+    """Draw the errors of cams by contact over their facets; None where they have one number."""
+    own = report.over_facets
+    if own is None:
+        return None
+    return draw(own, *own.scenes) if len(own.scenes) == 1 else draw_all(own)
+
+
+def _over(report: Report, lines: Sequence[Line]) -> Over:
+    return OVER[report.clock or common_clock(line.drive for line in lines)]
 
 
 def _error_of(lines: Sequence[Line]) -> str:
@@ -160,6 +169,11 @@ def _count(axes: Axes, lines: Sequence[Line], period_s: float = 1.0) -> None:
     _ticks(axes, {period_s / n: f"{n:g}" for n in numbers})
 
 
+def _facets(axes: Axes, lines: Sequence[Line]) -> None:
+    """Set ticks at the numbers of facets of cams, on a share of a turn or of the period."""
+    _count(axes, lines, lines[0].period_s)
+
+
 def _time(axes: Axes, lines: Sequence[Line]) -> None:
     """Set ticks of an axis over steps of time at the ones that were run, as many as have room."""
     steps = {float(s) for line in lines for s in line.cells["dt_s"]}
@@ -218,4 +232,5 @@ class Over:
 OVER = {
     TURNS: Over(STEP, _upper, PER_TURN, _count, 0.0),
     SECONDS: Over(TIME, _time, TIME, _time, 1.0),
+    FACETS: Over(SIDES_OF, _facets, SIDES_OF, _count, 0.0),
 }

@@ -117,6 +117,8 @@ class Seconds(Clock):
 
 
 TURNS, SECONDS = Clock("turn", "", "turns"), Seconds("second", "/s", "s")
+FACETS = Clock("turn", "", "facets")
+"""The clock of cams by contact, whose steps are their facets."""
 _CLOCKS = {"free": SECONDS}
 
 

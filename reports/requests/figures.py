@@ -103,7 +103,10 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
 
 
 def _whole(report: Report, drawing: Drawing) -> Report | None:
-    """The part of a store for a figure over all scenes: driven scenes, where there are any."""
+    """The part of a store for a figure over all scenes: driven scenes, where there are any, or
+    cams of several numbers of facets."""
+    if drawing.drives == ("facets",):
+        return report if report.over_facets else None
     if report.driven is not None:
         return report.driven if "driven" in drawing.drives else report
     alike = len({line.way.name for line in report.lines}) < 2

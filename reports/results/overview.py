@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
+from typing import ClassVar
 
 import pandas as pd
 
@@ -14,7 +15,7 @@ from models.files.reading import parse_scene
 from models.scene import Scene
 from reports.output.numbers import count, duration, listed
 from reports.plan.requirements import under_control
-from reports.protocol.length import SECONDS, TURNS, clock_of, common_clock
+from reports.protocol.length import FACETS, SECONDS, TURNS, Clock, clock_of, common_clock
 from reports.protocol.way import TARGETS, WAYS, way_of_row
 from reports.results.candidates import Candidate, Costs, candidates, costs_of, noise
 from reports.results.lines import (
@@ -37,6 +38,8 @@ class Report:
     """A store as its readers see it: its newest lines, and their cells."""
 
     stored: Stored
+    clock: ClassVar[Clock | None] = None
+    """Clock of all lines, None where their drives have it."""
 
     @cached_property
     def lines(self) -> tuple[Line, ...]:
@@ -114,6 +117,23 @@ class Report:
         own = cells[~other].reset_index(drop=True)
         return DrivenReport(replace(self.stored, cells=own), whole=self)
 
+    @cached_property
+    def over_facets(self) -> FacetReport | None:
+        """Report of cams by contact, each at its finest step; None where no cam has several numbers
+        of facets."""
+        rows = []
+        for line in self.lines:
+            scene, row = self.scenes[line.scene], line.cells.iloc[-1]
+            for sides in {pair.facets for pair in scene.cams.values()} if scene else ():
+                base = line.scene.removesuffix(f"-{sides}-facets")
+                where = f"{base} at {row['steps_per_turn']:g} steps a turn"
+                own = {"scene": where, "line": f"{where} {named(line)}", "steps_per_turn": sides}
+                rows += [{**row, **own, "dt_s": line.period_s / sides}] if sides else []
+        cells = pd.DataFrame(rows)
+        if not rows or not (several := cells["line"].duplicated(keep=False)).any():
+            return None
+        return FacetReport(replace(self.stored, cells=cells[several]), whole=self)
+
     def of_kind(self, kind: str) -> tuple[Line, ...]:
         """Return the lines of a kind (`reports.protocol.way.Way.kinds`)."""
         return tuple(line for line in self.lines if kind in line.way.kinds)
@@ -144,6 +164,26 @@ class DrivenReport(Report):
         return {name: look for name, look in self.whole.looks.items() if name in shown}
 
 
+@dataclass(frozen=True)
+class FacetReport(DrivenReport):
+    """Cams by contact over their facets, in the place of steps: a side of the profile is to the
+    error as a step of the cam's angle."""
+
+    clock = FACETS
+
+    @cached_property
+    def lines(self) -> tuple[Line, ...]:
+        return self.of("place_pure")
+
+    def of(self, quantity: str) -> tuple[Line, ...]:
+        """Return the lines of a quantity; what facets leave is the error of the step."""
+        wrong, right = "converges to the wrong answer: floor", "down to the error of the step,"
+        return tuple(
+            replace(line, words=line.words.replace(wrong, f"order {line.fit.order:.1f} {right}"))
+            for line in lines(self.stored, quantity)
+        )
+
+
 def _parsed(text: str | None, name: str) -> Scene | None:
     """Return the scene of a text; None for a text that can not be read."""
     if text is None:
@@ -161,7 +201,7 @@ SHOWN = 10
 def notes(report: Report, lines: Sequence[Line], timed: bool = False) -> list[str]:
     """Return paragraphs on the lines that a figure shows; ``timed`` where it shows times."""
     return [
-        f"{versions(report, lines)}. {study(lines)}. {made(report, timed)}.",
+        f"{versions(report, lines)}. {study(lines, report.clock)}. {made(report, timed)}.",
         *settings(report, lines),
     ]
 
@@ -175,9 +215,9 @@ def versions(report: Report, lines: Sequence[Line]) -> str:
     return ", ".join([*(f"crankcheck {version}" for version in sorted(own)), *engines, *others])
 
 
-def study(lines: Sequence[Line]) -> str:
-    """Return the size of the grid of the lines."""
-    return _STUDIES[common_clock(line.drive for line in lines)](lines)
+def study(lines: Sequence[Line], clock: Clock | None = None) -> str:
+    """Return the size of the grid of the lines, by that ``clock`` or the one of their drives."""
+    return _STUDIES[clock or common_clock(line.drive for line in lines)](lines)
 
 
 def _where(lines: Sequence[Line]) -> str:
@@ -186,12 +226,12 @@ def _where(lines: Sequence[Line]) -> str:
     return f"Study: {where}, {count(len({named(line) for line in lines}), 'variant')}"
 
 
-def _in_turns(lines: Sequence[Line]) -> str:
+def _in_turns(lines: Sequence[Line], of: str = "steps per turn") -> str:
     steps = sorted({float(n) for line in lines for n in line.cells["steps_per_turn"]})
     turns = sorted({float(n) for line in lines for n in line.cells["turns"]})
     to = f"{steps[0]:g}" + (f" to {steps[-1]:g}" if len(steps) > 1 else "")
     long = ", ".join(f"{n:g}" for n in turns) + (" turn" if turns == [1.0] else " turns")
-    return f"{_where(lines)}, {to} steps per turn, {long}"
+    return f"{_where(lines)}, {to} {of}, {long}"
 
 
 def _in_seconds(lines: Sequence[Line]) -> str:
@@ -200,7 +240,11 @@ def _in_seconds(lines: Sequence[Line]) -> str:
     return f"{_where(lines)}, let go for {lasts}, dt {listed([duration(dt) for dt in dts])}"
 
 
-_STUDIES = {TURNS: _in_turns, SECONDS: _in_seconds}
+_STUDIES: Mapping[Clock, Callable[[Sequence[Line]], str]] = {
+    TURNS: _in_turns,
+    SECONDS: _in_seconds,
+    FACETS: partial(_in_turns, of="facets"),
+}
 
 
 def made(report: Report, timed: bool) -> str:

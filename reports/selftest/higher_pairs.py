@@ -1,4 +1,4 @@
-"""Faults of gears and cams: another pair in the engine, and contact lost in the log."""
+"""Faults of gears and cams: another pair or its spring in the engine; contact lost in the log."""
 
 import math
 from collections.abc import Callable
@@ -6,14 +6,18 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from analytic.cams.outline import outlined
 from models.scene import Scene
 from models.scene.cam_laws import CamLaw
 from models.scene.pairs import CamPair, Gear
 from reports.selftest import fault
 from reports.selftest.log_faults import WHEN, moved
 from sim.engine import Run
+from sim.registry import engine
 
-TRAIN, CAM = "planetary", "cam-roller"
+TRAIN, CAM, FACE = "planetary", "cam-roller", "cam-flat"
+FACETS, FINER = 360, 4
+"""Facets of a cam by contact, and steps over those of other runs: these show few facets."""
 LOST = slice(WHEN, WHEN + 3)
 """Samples at which contact is lost."""
 
@@ -46,6 +50,16 @@ def _other_law(pair: CamPair, _: float) -> CamPair:
     parts = [replace(one, kind="cycloidal") if one.lift else one
              for one in pair.profile.law.segments]  # fmt: skip
     return _profile(pair, law=CamLaw(tuple(parts)))
+
+
+def _fewer_facets(scene: Scene, share: float) -> Scene:
+    return outlined(scene, round(FACETS * (1.0 - share)))
+
+
+def _softer(scene: Scene, share: float) -> Scene:
+    springs = {name: replace(own, rate=own.rate * (1.0 - share))
+               for name, own in scene.springs.items()}  # fmt: skip
+    return replace(scene, springs=springs)
 
 
 def _lifted(scene: Scene, done: Run, share: float) -> Run:
@@ -84,4 +98,11 @@ PAIRS = (
           size=1e-3, unit="of it"),
     _disc("contact-lost", "contact is lost for three samples",
           plant=fault.in_log(_lifted), size=1e-2, unit="of it"),
+    fault.Fault("contact", "facets-few", "fewer facets than requested", "CC104",
+                fault.in_scene(_fewer_facets), 0.9, "of them", scenes=(FACE,),
+                needs=lambda name: engine(name).applies_cams_by_contact),
+    fault.Fault("force", "spring-soft", "the spring of a follower is too soft", "CC123",
+                fault.in_scene(_softer), 2e-2, "of it", scenes=(FACE,),
+                needs=lambda name: engine(name).applies_cams
+                and engine(name).forces_of != "nothing"),
 )  # fmt: skip

@@ -22,6 +22,7 @@ from reports.output.write import provenance
 from reports.plan.grid import Grid, Task, grid
 from reports.plan.study import Study
 from reports.results.lines import lines
+from reports.results.overview import Report
 from reports.results.recommend import noise_line, recommendation_table, recommendations
 from reports.store.manifest import Manifest
 from reports.store.reader import read_store, stored_costs, stored_endings, stored_keys
@@ -238,6 +239,9 @@ def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
     place = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
     console.print(harmless(place), markup=False)
     stored = read_store(folder)
+    over_facets = Report(stored).over_facets
+    for line in over_facets.lines if over_facets else ():
+        say(console, f"{line.scene}, over facets: {line.engine} {line.name}: {line.words}")
     if stored.timings.empty:
         return
     console.print()

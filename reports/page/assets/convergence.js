@@ -7,6 +7,7 @@
   const scene = document.getElementById("convergence-scene");
   const quantity = document.getElementById("convergence-quantity");
   const table = document.getElementById("fits");
+  const per = () => ((own.faceted || []).includes(scene.value) ? "facets" : "steps a turn");
   const lines = () => own.quantities[quantity.value].filter((line) => line.scene === scene.value);
 
   function traces(line) {
@@ -24,7 +25,7 @@
       {
         x: line.steps, y: line.error, visible, mode: "markers", name: look.name,
         marker: { color: paint, size: look.size, symbol: look.symbol },
-        text: line.steps.map((steps, i) => `${head}${steps} steps a turn: ${short(line.error[i])}${tail}`),
+        text: line.steps.map((steps, i) => `${head}${steps} ${per()}: ${short(line.error[i])}${tail}`),
         hovertemplate: "%{text}<extra></extra>",
       },
       {
@@ -43,7 +44,7 @@
     return {
       data: shown.flatMap(traces),
       layout: {
-        xaxis: { ...crankcheck.logAxis("steps a turn", false), ...ticks },
+        xaxis: { ...crankcheck.logAxis(per(), false), ...ticks },
         yaxis: crankcheck.logAxis(`error [${own.units[quantity.value]}]`, true),
       },
     };

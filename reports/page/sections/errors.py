@@ -47,16 +47,23 @@ def convergence(report: Report) -> Section:
     }
     own = {name: lines(report.stored, name) for name in names if name != "place_pure"}
     curves = {name: [drawn(report, x) for x in own.get(name, report.lines)] for name in names}
+    faceted = report.over_facets
+    if faceted:
+        for name in names:
+            curves[name] += [drawn(report, x) for x in faceted.of(name)]
+    both = [*report.lines, *(faceted.lines if faceted else ())]
+    over = {"faceted": list(faceted.scenes)} if faceted else {}
     return Section(
         anchor="convergence",
         title="Error against step",
         template="convergence.html",
         words={
-            "scenes": list(report.scenes),
+            "scenes": list(dict.fromkeys(line.scene for line in both)),
             "quantities": names,
-            "rows": [_row(report, line) for line in report.lines],
+            "rows": [_row(report, line) for line in both],
         },
-        embedded={"quantities": curves, "units": {name: DIAGRAMS[name][1] for name in names}},
+        embedded={"quantities": curves, "units": {name: DIAGRAMS[name][1] for name in names}}
+        | over,
         scripts=("legend.js", "charts.js", "convergence.js"),
         plotly=True,
     )

@@ -3,11 +3,12 @@
 from collections.abc import Collection, Sequence
 from functools import partial
 
+from analytic.cams.outline import outlined
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.selftest import engines, forces, requests
 from reports.selftest.fault import PROFILE, STEPS, FaultRuns, FaultSet
-from reports.selftest.higher_pairs import PAIRS
+from reports.selftest.higher_pairs import FACETS, FINER, PAIRS
 from reports.selftest.log_faults import CLOCK, MISSING, VALUES
 from reports.selftest.mechanism import MECHANISM, MISPLACED
 from reports.selftest.unseen import UNSEEN
@@ -17,6 +18,11 @@ def turn(scene: Scene, engine: str, steps: int, converge: bool, *, forces: bool 
     """A cell of one turn in so many steps."""
     dt_s = scene.driver.law.period_s / steps
     return Cell(scene, engine, PROFILE, dt_s, steps, converge=converge, with_forces=forces)
+
+
+def contact(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
+    """A cell of one turn of cams by contact, at finer steps."""
+    return turn(outlined(scene, FACETS), engine, FINER * steps, converge)
 
 
 def words(scenes: Collection[str]) -> Sequence[str]:
@@ -50,7 +56,13 @@ FAULTS = FaultSet(
         *forces.FAULTS,
     ),
     {
-        "motion": FaultRuns(GROUPS, turn, words, SETTINGS, unseen=UNSEEN),
+        "motion": FaultRuns(GROUPS, turn, words, SETTINGS, unseen=UNSEEN, also=("contact",)),
+        "contact": FaultRuns(
+            {"contact": f"another cam by contact, {FINER * STEPS} steps a turn"},
+            contact,
+            words,
+            {},
+        ),
         "forces": FaultRuns(
             {"force": "a right motion with wrong forces"},
             partial(turn, forces=True),

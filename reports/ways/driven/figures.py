@@ -7,6 +7,7 @@ BOTH = ("driven", "let go")
 FIGURES = {
     "work-precision": Drawing(work_precision.draw, work_precision.draw_all, ("driven", "elastic")),
     "convergence": Drawing(convergence.draw, convergence.draw_all, (*BOTH, "elastic")),
+    "facets": Drawing(None, convergence.draw_over_facets, ("facets",)),
     "split": Drawing(error_parts.draw),
     "mechanism": Drawing(mechanism.draw, drives=BOTH),
     "profile": Drawing(None, work_precision.draw_profile),

@@ -67,7 +67,7 @@ def in_turn() -> Iterator[tuple[str, str, str, int]]:
     that show it; one inside an engine in each that can have it."""
     turn = 0
     for name, fault in FAULTS.items():
-        short = fault.kind in ("motion", "forces")
+        short = fault.kind in ("motion", "forces", "contact")
         fine = short or name in UNSEEN_AT_90
         for engine in engines_of(name) if fault.group in INSIDE else [None]:
             if there := [at for at in places_of(name) if engine in (None, at[1])]:
