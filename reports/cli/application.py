@@ -19,7 +19,7 @@ from rich.console import Console
 from typer.core import TyperCommand, TyperGroup
 
 from models.errors import CrankcheckError, harmless
-from reports.cli.commands import COMMANDS
+from reports.cli.commands import COMMANDS, COMPARE, OWN
 from reports.output import console
 from reports.requests.options import named, note_of
 from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, may_print, seen
@@ -42,13 +42,14 @@ class Late(TyperCommand):
 
     def __init__(self, words: str) -> None:
         self.words = words
-        super().__init__(words.split()[-1], help=COMMANDS[words][1])
+        command = COMMANDS[words]
+        super().__init__(words.split()[-1], help=command.help, rich_help_panel=command.panel)
 
     @cached_property
     def loaded(self) -> TyperCommand:
         """The command with its options."""
         alone = typer.Typer(add_completion=False)
-        typed = _typed(named(COMMANDS[self.words][0]))
+        typed = _typed(named(COMMANDS[self.words].request))
         alone.command(self.name, help=self.help)(typed)
         return cast(TyperCommand, typer.main.get_command(alone))
 
@@ -76,7 +77,7 @@ NAME = "crankcheck"
 app = typer.Typer(
     name=NAME,
     cls=CommandGroup,
-    help="Hold physics engines to the closed form of planar closed-loop mechanisms.",
+    help="Compare physics engines with the closed form of planar closed-loop mechanisms.",
     epilog="Exit codes: 0 all within tolerance, 1 out of tolerance or worse than before, 2 bad "
     "input or usage, 70 a fault of crankcheck itself, 130 interrupted, 141 nobody reads the "
     "output, 143 terminated.",
@@ -86,11 +87,12 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 engines_app = typer.Typer(cls=CommandGroup, invoke_without_command=True)
-app.add_typer(engines_app, name="engines")
+app.add_typer(engines_app, name="engines", rich_help_panel=COMPARE)
 app.add_typer(
     typer.Typer(cls=CommandGroup, no_args_is_help=True, callback=lambda: None),
     name="recipe",
-    help="Show how something is read out of an engine.",
+    help="Print a program that reads something out of an engine.",
+    rich_help_panel=OWN,
 )
 
 
@@ -232,7 +234,7 @@ def _options(
         os.environ[TRACEBACK] = "1"
 
 
-@engines_app.callback(help=COMMANDS["engines"][1])
+@engines_app.callback(help=COMMANDS["engines"].help)
 def _engines(
     context: typer.Context,
     settings: Annotated[
@@ -241,7 +243,7 @@ def _engines(
 ) -> None:
     if context.invoked_subcommand is None:
         with guarded():
-            request = named(COMMANDS["engines"][0])
+            request = named(COMMANDS["engines"].request)
         _end_with(request(settings))
 
 

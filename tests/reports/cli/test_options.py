@@ -20,7 +20,7 @@ LEAST: dict[str, tuple[object, ...]] = {
 
 
 def kind_of(line: str) -> type:
-    kind = named(COMMANDS[line.split()[0]][0])
+    kind = named(COMMANDS[line.split()[0]].request)
     return named(kind.answered_by) if hasattr(kind, "answered_by") else kind
 
 
