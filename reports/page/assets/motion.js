@@ -8,6 +8,7 @@
   const [scene, steps, told, settings, scale, floor] = ["scene", "steps", "told", "settings", "scale", "floor"].map(part);
   let shown = null; // the scene of the moment
   let legend = null;
+  let isMagnified = false; // by a factor that was chosen
   let last = null; // the mechanism and the position that were drawn last
 
   const cellAt = (line) => line.cells.find((cell) => String(cell.steps) === steps.value);
@@ -40,6 +41,8 @@
     line.style.height = `${axes.yaxis._length}px`;
   }
 
+  // The first screen has the same mechanism, with the same engines.
+  const answer = crankcheck.stage("answer", { overlays: runs, magnified: () => Number(part("factor").value) });
   const stage = crankcheck.stage("motion", {
     overlays: runs,
     drawn: (mechanism, position) => {
@@ -47,7 +50,8 @@
       cursor();
     },
   });
-  const parts = crankcheck.legend(part("parts"), crankcheck.parts.groups(), () => curves());
+  const every = own.scenes.flatMap((each) => each.lines.flatMap((line) => line.cells.map((cell) => cell.parts)));
+  const parts = crankcheck.legend(part("parts"), crankcheck.parts.groups(every), () => curves());
   const lineChosen = () => shown.lines.find((each) => String(each.look) === settings.value);
   const partsChosen = () => (lineChosen() && cellAt(lineChosen())?.parts) ?? null;
   const plot = crankcheck.chart(part("chart"), () => {
@@ -64,6 +68,13 @@
     plot();
   }
 
+  function redraw() {
+    stage.draw();
+    answer.draw();
+    const factor = part("factor").selectedOptions[0].textContent;
+    document.getElementById("answer-told").textContent = `${scene.value}, ${steps.value} steps a turn, in grey the reference; errors of the engines: ${factor}.`;
+  }
+
   const option = (value, text) => crankcheck.html("option", { value: String(value) }, text);
 
   /** Refill the choice of steps, and keep the one that was chosen where it is there. */
@@ -75,38 +86,48 @@
     steps.value = String(wanted ?? "");
   }
 
-  /** Of each engine the settings that are drawn at first: the judged ones, else the last. */
+  /** Of each engine the settings that are drawn at first: as shipped, and the judged ones, else the last. */
   function firstShown() {
     const best = new Map();
     for (const { look } of shown.lines) {
       const engine = looks[look].engine;
       if (!best.has(engine) || own.judged.includes(look) || !own.judged.includes(best.get(engine))) best.set(engine, look);
     }
-    return new Set(best.values());
+    const shipped = shown.lines.map(({ look }) => look).filter((look) => looks[look].variant === "as-shipped");
+    return new Set([...best.values(), ...shipped]);
   }
 
   function choose() {
     shown = own.scenes.find((each) => each.drawing.name === scene.value);
     stage.set(shown.drawing);
+    answer.set(shown.drawing);
     offerSteps();
     const first = firstShown();
     const there = new Set(shown.lines.map((line) => line.look));
-    legend = crankcheck.legend(part("legend"), crankcheck.lookGroups(there, (look) => first.has(look.number)), stage.draw);
+    const was = legend;
+    const on = ({ number }) => was?.kept(number) ?? first.has(number);
+    legend = crankcheck.legend(part("legend"), crankcheck.lookGroups(there, on), redraw);
     const kept = settings.value;
     settings.replaceChildren(...[...there].map((n) => option(n, looks[n].name)));
     settings.value = there.has(Number(kept)) && kept !== "" ? kept : String([...first][0] ?? "");
     for (const words of told.children) words.hidden = words.dataset.scene !== scene.value;
-    stage.draw();
+    if (!isMagnified) stage.makeVisible(); // until a factor is chosen by hand
+    redraw();
     curves();
   }
 
   scene.addEventListener("change", choose);
   steps.addEventListener("change", () => {
-    stage.draw();
+    redraw();
     curves();
   });
+  part("factor").addEventListener("change", () => {
+    isMagnified = true;
+    redraw();
+  });
+  part("visible").addEventListener("click", redraw);
   settings.addEventListener("change", curves);
   scale.addEventListener("change", curves);
   choose();
-  stage.start();
+  for (const each of [answer, stage]) each.start();
 })();

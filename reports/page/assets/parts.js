@@ -12,10 +12,13 @@ crankcheck.parts = (() => {
     gap: { label: "closure: widest gap / L", paint: "p4", width: 1.6, dash: "longdash" },
   };
 
-  /** Groups for a legend of all parts. */
-  const groups = () => [{
+  /** Whether a drive is off by more than rounding in any of some cells' parts: the largest level of a row is 32767. */
+  const drives = (every) => every.some((each) => 32767 * (each?.curves.scales[each.names.indexOf("drive")] ?? 0) > 1e-9);
+
+  /** Groups for a legend of all parts; the drive is on at first where it is off by more than rounding. */
+  const groups = (every) => [{
     title: "",
-    items: Object.entries(PARTS).map(([id, part]) => ({ id, label: part.label, paint: part.paint, dash: part.dash, on: true })),
+    items: Object.entries(PARTS).map(([id, part]) => ({ id, label: part.label, paint: part.paint, dash: part.dash, on: id !== "drive" || drives(every) })),
   }];
 
   /** Ticks every 60 degrees of a turn, as angles from 0 to 300. */

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Locator, Page
+from playwright.sync_api import FloatRect, Locator, Page
 
 from models.array import Array
 from tests.reports.page.tab import Tab
@@ -35,6 +35,12 @@ def corners(path: Locator) -> Array:
     return np.reshape(np.array(numbers, dtype=float), (-1, 2))
 
 
+def box_of(place: Locator) -> FloatRect:
+    box = place.bounding_box()
+    assert box is not None
+    return box
+
+
 @pytest.fixture
 def opened(wide: Tab, small_page: Path) -> Tab:
     """The page of the small store with all its diagrams drawn, as it was when it was opened."""
@@ -52,6 +58,33 @@ def test_printing_draws_what_was_not_scrolled_to(wide: Tab, small_page: Path) ->
 def test_a_whole_visit_has_no_error_and_no_request_and_every_control_a_name(opened: Tab) -> None:
     opened.no_error_and_no_request("#motion-visible")
     opened.every_control_has_a_name()
+
+
+ANSWER = (".verdict", "#advice", "#answer-chart", "#answer-picture")
+"""The parts of the first screen, in the order of a phone."""
+
+
+def test_the_first_screen_has_verdict_settings_diagram_and_mechanism(
+    opened: Tab, page: Page
+) -> None:
+    page.evaluate("() => scrollTo(0, 0)")
+    ends = [box["y"] + box["height"] for box in map(box_of, map(page.locator, ANSWER))]
+    assert max(ends) <= 900.0
+    assert page.locator("#advice tbody tr:visible").count() == 2  # engines, for one target
+    page.locator("#advice .copy:visible").first.click()
+    page.wait_for_function("() => document.querySelector('#advice .copy').textContent !== ''")
+    drawers = page.locator("#recommendation .snippet pre").all_text_contents()
+    copied = page.evaluate("() => navigator.clipboard.readText().catch(() => '')")
+    assert copied == "" or copied in drawers
+    page.select_option("#advice-target", index=0)
+    assert page.locator("#advice tbody tr:visible").count() == 2
+
+
+def test_a_phone_has_the_first_screen_in_its_order(phone: Tab, small_page: Path) -> None:
+    found = phone.visit(small_page, *SECTIONS).page
+    tops = [box_of(found.locator(part))["y"] for part in ANSWER]
+    assert tops == sorted(tops)
+    assert tops[-1] < box_of(found.locator(".sentences"))["y"]
 
 
 def test_a_switch_of_the_legend_takes_a_trace_or_an_engine_out_and_back(page: Page) -> None:
@@ -130,6 +163,10 @@ def test_the_drawing_moves_by_itself_if_that_is_welcome_and_stops(opened: Tab, p
     page.wait_for_function("() => document.getElementById('motion-play').textContent === 'Pause'")
     moved = "([links, before]) => document.querySelector(links).getAttribute('d') !== before"
     page.wait_for_function(moved, arg=[LINKS, opened.drawn(LINKS)[0]])
+    assert int(page.input_value("#motion-factor")) > 1  # so that the engines are seen apart
+    page.select_option("#motion-scene", "shaper")
+    opened.elapse(20_000)  # round after round, in another scene as well
+    assert opened.text("#motion-play") == "Pause"
     page.locator("#motion-play").click()
     stopped = opened.drawn(LINKS)
     opened.elapse(150)
@@ -160,6 +197,8 @@ def test_the_keyboard_skips_to_the_verdict_and_turns_the_crank(opened: Tab, page
 def test_an_error_is_magnified_by_the_factor_and_has_its_parts(opened: Tab, page: Page) -> None:
     parts = ["total", "drive", "model floor", "discretisation", "closure: widest gap / L"]
     assert list(traces(page, "motion-chart")) == parts
+    off = [name for name, shown in traces(page, "motion-chart").items() if not shown]
+    assert off == ["drive"]  # at rounding
     page.select_option("#motion-steps", "90")
     page.locator("#motion-slider").focus()
     page.keyboard.press("End")
