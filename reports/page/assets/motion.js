@@ -5,7 +5,7 @@
   const { looks, unpacked } = crankcheck;
   const own = crankcheck.embedded("motion");
   const part = (name) => document.getElementById(`motion-${name}`);
-  const [scene, steps, told, settings, scale, floor] = ["scene", "steps", "told", "settings", "scale", "floor"].map(part);
+  const [scene, steps, told, settings, scale, floor, body] = ["scene", "steps", "told", "settings", "scale", "floor", "body"].map(part);
   let shown = null; // the scene of the moment
   let legend = null;
   let isMagnified = false; // by a factor that was chosen
@@ -57,7 +57,10 @@
   const plot = crankcheck.chart(part("chart"), () => {
     const found = partsChosen();
     const axis = found && shown.axes[found.axis];
-    return crankcheck.parts.figure(found, axis, shown.body, shown.drawing, scale.value === "log", parts.on);
+    const other = shown.body && body.value !== shown.body.name;
+    part("parts").hidden = Boolean(other);
+    const drawn = other ? { name: body.value, turns: body.value.startsWith("angle"), other } : shown.body;
+    return crankcheck.parts.figure(found, axis, drawn, shown.drawing, scale.value === "log", parts.on);
   }, cursor);
 
   /** The curves of the run that is chosen, with their legend and what is said of its floor. */
@@ -66,6 +69,7 @@
     floor.textContent = found ? lineChosen().floor : "No curve of this run: see Stability.";
     parts.offer(found ? found.names : []);
     plot();
+    know();
   }
 
   function redraw() {
@@ -73,6 +77,22 @@
     answer.draw();
     const factor = part("factor").selectedOptions[0].textContent;
     document.getElementById("answer-told").textContent = `${scene.value}, ${steps.value} steps a turn, in grey the reference; errors of the engines: ${factor}.`;
+  }
+
+  /** What is known of the run that is chosen. */
+  function know() {
+    const { html, short } = crankcheck;
+    const line = lineChosen();
+    const cell = line && cellAt(line);
+    part("known").hidden = !cell;
+    if (!cell) return;
+    part("cell").textContent = `${scene.value}, ${looks[line.look].name}, ${steps.value} steps a turn: ${cell.verdict}.`;
+    part("failed").replaceChildren(...cell.failed.map((rule) => html("li", {}, `${own.rules[rule] ?? "Rule"} (${rule})`)));
+    part("errors").replaceChildren(...cell.errors.map(([name, unit, error, limit]) => html("tr", {},
+      html("th", { scope: "row" }, name), html("td", { class: "num" }, `${short(error, 3)} `, html("span", { class: "quietly" }, unit)),
+      html("td", { class: "num" }, short(limit, 3)), html("td", { class: "num" }, limit ? `${crankcheck.readable(error / limit, 3)} times` : "–"))));
+    part("set").textContent = own.settings[line.look];
+    part("command").textContent = `${line.command} ${steps.value}`;
   }
 
   const option = (value, text) => crankcheck.html("option", { value: String(value) }, text);
@@ -107,6 +127,9 @@
     const was = legend;
     const on = ({ number }) => was?.kept(number) ?? first.has(number);
     legend = crankcheck.legend(part("legend"), crankcheck.lookGroups(there, on), redraw);
+    const bodies = shown.lines.flatMap((line) => line.cells.flatMap((cell) => cell.parts?.names ?? []));
+    const others = [...new Set([shown.body?.name ?? "", ...bodies.filter((name) => !crankcheck.parts.isPart(name))])];
+    body.replaceChildren(...others.map((name, i) => option(name, i ? name : `${name}, the worst`)));
     const kept = settings.value;
     settings.replaceChildren(...[...there].map((n) => option(n, looks[n].name)));
     settings.value = there.has(Number(kept)) && kept !== "" ? kept : String([...first][0] ?? "");
@@ -127,7 +150,17 @@
   });
   part("visible").addEventListener("click", redraw);
   settings.addEventListener("change", curves);
-  scale.addEventListener("change", curves);
+  for (const each of [scale, body]) each.addEventListener("change", curves);
+  const linesOf = (name) => own.scenes.find((each) => each.drawing.name === name)?.lines ?? [];
+  crankcheck.leads("motion-known", (at) => linesOf(at.scene || scene.value).some(({ look }) => String(look) === at.look), (at) => {
+    scene.value = at.scene || scene.value;
+    choose();
+    settings.value = at.look;
+    const { cells } = lineChosen();
+    steps.value = String(at.steps ? Number(at.steps) : cells.at(-1).steps);
+    redraw();
+    curves();
+  });
   choose();
   for (const each of [answer, stage]) each.start();
 })();

@@ -8,6 +8,7 @@ import pytest
 from playwright.sync_api import FloatRect, Locator, Page
 
 from models.array import Array
+from reports.store.reader import Stored
 from tests.reports.page.tab import Tab
 from tests.worlds.tiers import slow
 
@@ -132,6 +133,32 @@ def test_convergence_has_fits_and_floors_and_the_table_follows(page: Page) -> No
     page.select_option("#convergence-quantity", "gap_pure")
     title = "() => document.getElementById('convergence-chart').layout.yaxis.title.text"
     assert "of longest link" in page.evaluate(title)
+
+
+def test_a_cell_of_a_table_leads_to_what_is_known_of_it(
+    opened: Tab, page: Page, small: Stored
+) -> None:
+    found = page.evaluate("() => document.querySelectorAll('main a.known').length")
+    assert found > len(small.cells)  # beside every cell the rows of other tables
+    page.locator("#provenance details", has_text="cells as a table").locator("> summary").click()
+    rows = page.locator("#cells tr", has_text="fourbar-lecture-1")
+    rows.locator("a", has_text="no bias").nth(1).click()
+    assert page.input_value("#motion-scene") == "fourbar-lecture-1"
+    assert page.input_value("#motion-steps") == "180"
+    cells = small.cells
+    own = cells[(cells["scene"] == "fourbar-lecture-1") & (cells["variant"] == "no bias")]
+    (row,) = own[own["steps_per_turn"] == 180].to_dict("records")
+    told = opened.text("#motion-known")
+    assert all(rule in told for rule in str(row["failed_rules"]).split())
+    for column in ("gap_pure", "gap_limit_pure", "velocity_pure"):
+        assert f"{row[column]:.2e}".replace("e-0", "e-") in told
+    command = opened.text("#motion-command")
+    assert "--engine pymunk --profile as-shipped" in command
+    assert "--set pymunk.error_bias=0" in command
+    assert command.endswith("--steps-per-turn 180")
+    bodies = page.locator("#motion-body option").all_text_contents()
+    page.select_option("#motion-body", index=1)
+    assert list(traces(page, "motion-chart")) == [bodies[1]]
 
 
 def test_tables_sort_by_their_numbers_up_and_down_and_are_filtered(page: Page) -> None:
