@@ -14,13 +14,13 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
-from matplotlib.ticker import MultipleLocator
 
 from analytic.cams.cam_design import ExaminedCam
 from analytic.cams.profile import CamContact, Plane, largest, touch, turn_of
 from models.array import Array
 from models.scene.cams import Cam, OscillatingFollower
-from reports.figures.sheet import SIDES, Panels, sheet
+from reports.figures.layout import LAYOUT
+from reports.figures.sheet import SIDES, Panels, sheet, spaced
 from reports.figures.style import COLUMN_IN, INK, QUIET, TINY, Look, saved, shorten, styled
 from reports.lectures.cams.profile_files import unit_of
 from reports.lectures.drawing.sheets.paper import (
@@ -51,7 +51,7 @@ WORDS_MM, LINE_MM, BAR_MM = 62.0, 5.2, 14.0
 def drawings(
     name: str, source: str, found: ExaminedCam, numbers: Mapping[str, str], paper: str
 ) -> Mapping[str, bytes]:
-    """Return all drawings as SVG and PDF by the names of their files; the numbers, by name, stand
+    """Return all drawings by the names of their files; the numbers, by name, stand
     beside the cam."""
     size, note = Paper.of(paper), f"crankcheck {crankcheck_version()}, closed form; {source}"
     files: dict[str, bytes] = {}
@@ -61,7 +61,7 @@ def drawings(
             "checks": draw_checks(name, note, found),
         }
         drawn = draw_cam(name, note, found, numbers, size)
-    for kind in ("svg", "pdf"):
+    for kind in LAYOUT.get().formats:
         files |= {
             f"{key}.{kind}": saved(one, kind, f"{name}: {key}") for key, one in figures.items()
         }
@@ -107,7 +107,7 @@ def _over_the_turn(
         one.plot(degrees, series, **CURVE)
         one.set_ylabel(label)
         one.set_xlim(0.0, 360.0)
-        one.xaxis.set_major_locator(MultipleLocator(60.0))
+        spaced(one, 60.0)
         one.axhline(0.0, color=QUIET, linewidth=0.5)
         for border in _borders(found)[1:-1]:
             one.axvline(border, color=QUIET, linewidth=0.5)

@@ -20,6 +20,7 @@ from models.lectures.tasks import TASKS
 from models.lectures.tasks.cams import CamTask, load_cam_task
 from models.scene.cam_laws import KINDS, CamLaw, Peaks, peak_factors
 from models.scene.cams import Cam
+from reports.figures.layout import Layout, laid_out
 from reports.lectures.cams.cam_scene import cam_scene
 from reports.lectures.cams.profile_files import profile_files, unit_of
 from reports.output.console import grid, say, say_whole, show_rows
@@ -31,7 +32,7 @@ Rows = list[dict[str, object]]
 
 
 @dataclass(frozen=True)
-class CamRequest:
+class CamRequest(Layout):
     """Arguments of `cam`, as given."""
 
     task: Annotated[
@@ -44,6 +45,7 @@ class CamRequest:
     json: Annotated[bool, "As JSON, not as tables."] = False
     paper: PaperSize = "A4"
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Design, check and write a cam. Raises CrankcheckError for a faulty request."""
         if self.task is None:

@@ -21,6 +21,7 @@ from models.errors import CrankcheckError
 from models.files.assemble import scene_text
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
+from reports.figures.layout import Layout, laid_out
 from reports.lectures.machine import cycle_rows
 from reports.output.console import say_whole
 from reports.output.formats import ENDINGS, write_frame
@@ -167,13 +168,14 @@ Figures = Annotated[Path | None, option("Draw the cycle, as SVG and PDF.", "DIR"
 
 
 @dataclass(frozen=True)
-class CycleRequest:
+class CycleRequest(Layout):
     """Arguments of `cycle`, as given."""
 
     scene: SceneName
     output: Output = None
     figures: Figures = None
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a steady cycle. Raises CrankcheckError for a faulty request."""
         _check_outputs(self)
@@ -226,7 +228,7 @@ def _write(
 
 
 @dataclass(frozen=True)
-class FlywheelRequest:
+class FlywheelRequest(Layout):
     """Arguments of `flywheel`, as given. ``written`` is the file of the scene, which is in free
     motion there with ``free``."""
 
@@ -241,6 +243,7 @@ class FlywheelRequest:
         False
     )
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a flywheel. Raises CrankcheckError for a faulty request."""
         _check(self)
