@@ -178,6 +178,8 @@ LETTERS = frozenset(map(chr, range(32, 127))) | frozenset("⁻⁰¹²³⁴⁵⁶
 """Letters in every file, so that most figures share the same cut of a font."""
 FACES: dict[Face, str] = {"normal": "", "italic": "italic"}
 """Styles of the font, and the sign in an SVG that needs them."""
+IDLE = re.compile(r' transform="rotate\(-0 [^"]*"|(?<=\n) +')
+"""Parts of an SVG by matplotlib that do nothing: turns by 0, and indents."""
 TEXT = re.compile(r"<text[^>]*>(.*?)</text>", re.DOTALL)
 
 
@@ -197,6 +199,7 @@ def saved(figure: Figure, kind: str, title: str) -> bytes:
 
 
 def _with_fonts(svg: str) -> str:
+    svg = IDLE.sub("", svg)
     texts = TEXT.findall(svg)
     letters = "".join(sorted(LETTERS.union(unescape("".join(texts))) - {"\n"}))
     faces = [style for style, sign in FACES.items() if sign in svg]
