@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
@@ -18,7 +17,7 @@ from analytic.cams.profile import touch, turn_of
 from models.array import Array
 from reports.figures.sheet import SIDES, Panels, sheet
 from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, Look, saved, shorten, styled
-from reports.lectures.cams.cam_sheet import draw_cam
+from reports.lectures.cams.cam_sheet import coloured, draw_cam
 from reports.lectures.cams.profile_files import unit_of
 from reports.lectures.drawing.sheets.paper import Paper
 from reports.output.write import crankcheck_version
@@ -27,7 +26,6 @@ CURVE: Look = {"color": "#1f5f9e", "linewidth": 1.2}
 LIMIT: Look = {"color": "#c04a1d", "linewidth": 0.7, "linestyle": (0, (4.0, 1.5))}
 STEPS = 240
 """Samples between two knots."""
-COLOURS = "viridis_r"
 
 
 def drawings(name: str, source: str, found: ExaminedCam, paper: str) -> Mapping[str, bytes]:
@@ -143,16 +141,16 @@ def draw_pressure(name: str, note: str, found: ExaminedCam) -> Figure:
         f"{note}; dots: largest in the rise {math.degrees(rise):.4g} deg, in the return "
         f"{math.degrees(back):.4g} deg."
     ]
-    marker: Look = {"color": INK, "marker": "o", "markersize": 2.6, "linestyle": "none"}
+    marker: Look = {
+        "color": INK, "marker": "o", "markersize": 4.0, "linestyle": "none",
+        "markeredgecolor": "white", "markeredgewidth": 0.7,
+    }  # fmt: skip
     base: Look = {"color": QUIET, "linewidth": 0.6, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
     entries = [(Line2D([], [], **base), "base circle"), (Line2D([], [], **marker), "largest")]
     panels = Panels(1, 1, 2.5, 0.48, 0.62, 0.1)
     figure, (axes,) = sheet(COLUMN_IN, panels, f"Pressure angle: {name}", entries, words)
     points = np.array([profile.real, profile.imag]).T
-    drawn = LineCollection(
-        list(np.stack([points[:-1], points[1:]], axis=1)), cmap=COLOURS, linewidths=3.0,
-        array=np.abs(np.degrees(contact.pressure_rad[:-1])), capstyle="round",
-    )  # fmt: skip
+    drawn = coloured(points, np.abs(np.degrees(contact.pressure_rad)))
     axes.add_collection(drawn)
     turn = np.exp(1j * np.linspace(0.0, math.tau, 361)) * found.cam.base_m * 1000.0
     axes.plot(turn.real, turn.imag, **base)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
@@ -39,6 +40,7 @@ CIRCLE: Look = {"color": QUIET, "linewidth": 0.5, "linestyle": (0, (8.0, 1.5, 1.
 FOLLOWER: Look = {"color": INK, "linewidth": 1.0}
 THIN: Look = {"color": QUIET, "linewidth": 0.4}
 FORCE = "#c04a1d"
+COLOURS = "viridis_r"
 FILL = "#dbe7f3"
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 ROUND = np.exp(1j * np.linspace(0.0, math.tau, 361))
@@ -62,6 +64,12 @@ class CamPlot:
     def write(self, point: complex, words: str, right: float, up: float, **look: object) -> None:
         x, y = self.place(np.array([point]))[0]
         text(self.axes, x + right, y + up, words, **({"size": SMALL} | look))  # type: ignore[arg-type]  # a look
+
+
+def coloured(places: Array, values: Array) -> LineCollection:
+    """Return a curve through places (n, 2), coloured by values (n,)."""
+    sides = list(np.stack([places[:-1], places[1:]], axis=1))
+    return LineCollection(sides, cmap=COLOURS, linewidths=3.0, array=values[:-1], capstyle="round")
 
 
 def follower_lines(cam: Cam, contact: CamContact, k: int, size: float) -> list[Plane]:
@@ -97,7 +105,8 @@ def draw_cam(name: str, note: str, found: ExaminedCam, paper: Paper) -> Canvas:
         phi = largest(turn_of(cam), lambda at: cam.law.at(at).first)[1]
     contact = touch(cam, np.array([phi]))
     turned = np.exp(1j * cam.sense * phi)
-    round_ = touch(cam, np.linspace(0.0, math.tau, 1441))
+    angles = np.linspace(0.0, math.tau, 1441)
+    round_, forces = touch(cam, angles), found.forces(angles)
     profile = round_.on_cam(round_.contact) * turned
     size = 0.5 * float(np.abs(profile).max())
     lines = follower_lines(cam, contact, 0, size)
@@ -109,6 +118,9 @@ def draw_cam(name: str, note: str, found: ExaminedCam, paper: Paper) -> Canvas:
     if cam.follower.roller_m and round_.pitch is not None:
         plot.curve(round_.on_cam(round_.pitch) * turned, **PITCH)
     plot.curve(profile, **CAM)
+    if forces is not None:
+        label = f"contact force [N] at {found.speed_rad_s:g} rad/s"
+        _colour(plot, words, coloured(plot.place(profile), forces.contact_n), label)
     plot.curve(0.06 * size * ROUND, **FOLLOWER)
     plot.write(0j, "O", 2.0, -4.0)
     for line in lines:
@@ -124,6 +136,15 @@ def _plot(axes: Axes, box: Box, curves: list[Plane]) -> CamPlot:
     every = np.concatenate(curves)
     scale, middle = box.fitted(np.stack([every.real, every.imag], axis=1), 4.0)
     return CamPlot(axes, ToScale(box, scale, middle))
+
+
+def _colour(plot: CamPlot, box: Box, curve: LineCollection, label: str) -> None:
+    """Draw a coloured curve, and its colour bar at the foot of a box."""
+    plot.axes.add_collection(curve, autolim=False)
+    place = (box.left, box.bottom + 2.0, 4.0, min(0.35 * box.height, box.height - 78.0))
+    bar = plot.axes.inset_axes(place, transform=plot.axes.transData)
+    plot.axes.figure.colorbar(curve, cax=bar)
+    bar.set_title(label, size=SMALL, loc="left")
 
 
 def _draw_supports(plot: CamPlot, cam: Cam, lines: list[Plane], size: float) -> None:
