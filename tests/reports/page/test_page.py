@@ -25,7 +25,7 @@ from tests.reports.results.made import Row, cell, stored, untimed
 
 ABSENT = ("engines", "hard", "reading_forces", "free", "elastic", "cams")
 STORED = [name for name in SECTIONS if name not in ABSENT]
-"""The sections of a driven store of two engines without forces or cams and without hard cases beside it."""
+"""The sections of a driven store of two engines without forces, cams, or hard cases beside it."""
 
 
 def test_every_section_is_there_in_its_order_and_nothing_is_loaded(small_page: Path) -> None:
