@@ -173,11 +173,6 @@ def largest(knots: Sequence[float], quantity: Callable[[Array], Array]) -> tuple
     return found
 
 
-def turn_of(cam: Cam) -> tuple[float, ...]:
-    """Return the knots of its law over one turn, both ends with them [rad]."""
-    return (*cam.law.knots_rad, math.tau)
-
-
 def corners(law: CamLaw, sign: int = 1) -> list[float]:
     """Return the angles [rad] of the corners of a profile: where the velocity of its law drops, or,
     with ``sign`` -1, grows, and the corner is concave."""

@@ -106,7 +106,7 @@ class CamRelation:
         )
         refs = {own.name: own.ref for limb in tree.limbs for own in limb.freedoms}
         self.cam_ref, self.follower_ref = refs[self.cam], refs[self.follower]
-        self.reach = max(map(abs, pair.profile.law.extremes(1)))
+        self.reach = max(map(abs, pair.profile.law.extremes[1]))
 
     def coefficients(self, at: float, ahead: float = 0.0) -> tuple[float, ...]:
         """Return MuJoCo's five coefficients of the parabola about a coordinate ``at`` of the cam;
