@@ -184,10 +184,6 @@ class Gear:
         found = 2.0 * self.distance_m(points) / abs(self.teeth[0] + self.second)
         return self.module_m if self.module_m is not None else found or None
 
-    def radius_m(self, points: Mapping[str, Points]) -> float:
-        """Return the smaller pitch radius [m], by `slip_m` where they have no mesh."""
-        return min(self.teeth) * self.slip_m(points)
-
     def slip_m(self, points: Mapping[str, Points]) -> float:
         """Return the slip of the pitch circles [m] at 1 of the relation: half the module; about
         one centre, without a mesh, such that the larger gear has a radius of 1 m."""

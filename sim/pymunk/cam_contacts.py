@@ -40,14 +40,6 @@ def add_contact(placed: SpaceBodies, pair: CamPair, number: int) -> None:
         placed.space.add(each)
 
 
-def correct(space: pymunk.Space, error_bias: float) -> None:
-    """Let contacts be corrected as joints are: Chipmunk's own bias of both is one number. Where all
-    of an error is, none remains as slop, by default 0.1 m."""
-    space.collision_bias = error_bias
-    if error_bias == 0.0:
-        space.collision_slop = 0.0
-
-
 def _face(shape: FollowerShape) -> list[Point]:
     """Return the corners of a flat follower."""
     (x, y), (ux, uy), reach = shape.place, shape.away, shape.reach_m
