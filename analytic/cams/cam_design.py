@@ -196,11 +196,10 @@ class ExaminedCam:
     def exceeded(self) -> list[str]:
         """The limits that the cam does not keep, and contact that it loses, in words."""
         faults, limits, (radius, at) = [], self.limits, self.radii[0]
-        for part, limit, extreme in zip(
-            ("rise", "return"),
-            (limits.pressure_rad, limits.return_rad),
-            self.pressures,
-            strict=True,
+        rise, back = self.pressures
+        for part, limit, extreme in (
+            ("rise", limits.pressure_rad, rise),
+            ("return", limits.return_rad, back),
         ):
             if extreme[0] > limit * (1.0 + ROUNDING):
                 angle, phi, most = np.degrees([*extreme, limit])

@@ -146,11 +146,6 @@ class Gear:
     phase_rad: float = 0.0
 
     @property
-    def joint(self) -> str:
-        """Its name among all joints; a scene's own names hold no space."""
-        return f"gear {self.name}"
-
-    @property
     def constant_rad(self) -> float:
         """The constant of its relation [rad]."""
         return self.second * self.phase_rad

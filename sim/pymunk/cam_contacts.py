@@ -28,7 +28,7 @@ def add_contact(placed: SpaceBodies, pair: CamPair, number: int) -> None:
         facet = pymunk.Segment(cam, here, there, shape.skin_m)
         facet.set_neighbors(ring[k], ring[k + 3])
         shapes.append(facet)
-    if shape.is_flat:
+    if pair.profile.follower.is_flat:
         face = [placed.from_centre(pair.follower, corner) for corner in _face(shape)]
         shapes.append(pymunk.Poly(follower, face))
     else:
