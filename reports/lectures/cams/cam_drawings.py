@@ -17,7 +17,7 @@ from matplotlib.patches import Polygon
 from matplotlib.ticker import MultipleLocator
 
 from analytic.cams.cam_design import ExaminedCam
-from analytic.cams.profile import CamContact, Plane, largest, touch, turn_of
+from analytic.cams.profile import CamContact, Plane, largest, touch
 from models.array import Array
 from models.scene.cams import Cam, OscillatingFollower
 from reports.figures.sheet import SIDES, Panels, sheet
@@ -71,7 +71,7 @@ def drawings(
 
 def samples(found: ExaminedCam) -> Array:
     """Return angles over a turn, dense between knots, with limits from both sides of them (T,)."""
-    knots = turn_of(found.cam)
+    knots = found.cam.law.knots_rad
     spans = [np.linspace(a, np.nextafter(b, 0.0), STEPS) for a, b in pairwise(knots)]
     return np.concatenate(spans)
 
@@ -169,7 +169,7 @@ def draw_cam(
     pressure angle of a cam without a load."""
     cam, (most, phi) = found.cam, found.pressures[0]
     if not most:
-        phi = largest(turn_of(cam), lambda at: cam.law.at(at).first)[1]
+        phi = largest(cam.law.knots_rad, lambda at: cam.law.at(at).first)[1]
     contact, turned = touch(cam, np.array([phi])), np.exp(1j * cam.sense * phi)
     angles = np.linspace(0.0, math.tau, 1441)
     round_ = touch(cam, angles)
@@ -235,7 +235,7 @@ def _follower(cam: Cam, contact: CamContact, size: float) -> list[Plane]:
         return [*lines, np.array([pivot, foot, tip + 0.5 * size * (tip - foot) / abs(tip - foot)])]
     if follower.is_flat:
         tip = follower.offset_m + 1j * tip.imag
-        reach = max(0.6 * size, *(1.15 * abs(speed) for speed in cam.law.extremes(1)))
+        reach = max(0.6 * size, *(1.15 * abs(speed) for speed in cam.law.extremes[1]))
         lines.append(tip + np.array([-reach, reach]))
     guide = tip + np.array([1.0j, 1.3j]) * size
     return [*lines, tip + np.array([0.0, 1.4j * size]), guide - 0.07 * size, guide + 0.07 * size]
