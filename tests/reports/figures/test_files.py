@@ -33,6 +33,7 @@ from reports.requests.solve import SolveRequest
 from reports.results.lines import lines
 from reports.results.overview import Report
 from reports.store.reader import read_store
+from sim.registry import ENGINES
 from tests.reports.results.made import cell, stored
 from tests.worlds.free_store import LASTS_S
 from tests.worlds.free_store import SCENE as LET_GO
@@ -291,6 +292,15 @@ def test_a_layout_is_kept_and_a_faulty_one_refused_in_a_line(store: Path, tmp_pa
     assert not (tmp_path / "c").exists()
     with pytest.raises(CrankcheckError, match="--no-notes: no figure is drawn; give --figures DIR"):
         SolveRequest(SCENES[0], no_notes=True).run(Console(), Console())
+
+
+def test_the_picture_of_the_readme_has_all_engines_and_is_small() -> None:
+    """`make picture` draws it anew; its times are those of a run."""
+    path = Path(__file__).parents[3] / "docs" / "images" / "work-precision-fourbar-lecture-1.svg"
+    svg = path.read_bytes()
+    assert len(svg) <= 60_000
+    variants = {f"{name} {profile}" for name in ENGINES for profile in ("as-shipped", "tuned")}
+    assert variants <= set(texts(svg).splitlines())
 
 
 def test_panels_of_a_figure_have_one_scale(report: Report) -> None:
