@@ -34,6 +34,8 @@ def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
     _causes(console, judged)
     console.print(_table(shown_rows(judged), console.width), "")
     _rest(console, judged)
+    if judged.known_text:
+        hanging(console, "known failures: ", judged.known_text, style="yellow")
     console.print(verdict_line(judged))
     console.print(escape("\n".join(footer(judged, facts))), style="dim", highlight=False)
 
@@ -198,6 +200,8 @@ def verdict_line(judged: JudgedLog) -> Text:
         what += f"; not judged: {few(names, 6)}"
     if judged.failures:
         out = sum(row.verdict == "out" for row in rows)
+        if judged.is_known:
+            return Text(f"KNOWN FAILURE: {out} of {what}", "bold yellow")
         return Text(f"OUT OF TOLERANCE: {out} of {what}", "bold red")
     return Text(f"WITHIN TOLERANCE: {what}", "bold green")
 

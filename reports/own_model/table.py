@@ -178,6 +178,8 @@ def verdict_text(judged: JudgedModel) -> str:
     own, last = judged.own, judged.lines[-1]
     if own.verdict == "within":
         head = "WITHIN TOLERANCE as written"
+    elif own.verdict == "known":
+        head = f"KNOWN FAILURE as written{_why_out(judged)}"
     elif own.verdict == "unsupported":
         head = f"NOT RUN as written: {own.reason}"
     else:
@@ -249,7 +251,7 @@ def is_diff(patch: str) -> bool:
 WIDE, NARROW = 76, 52
 """Columns of a terminal that show the gap and the body of the largest error; and those below which
 the convergence by halving is left out, if all lines ran."""
-STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
+STYLES = {name: "bold green" if name == "within" else "bold red" for name in MARKS}
 
 
 def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> None:
@@ -265,6 +267,8 @@ def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> Non
     if text := gaps(judged):
         hanging(console, "joints: ", harmless(text))
     _disturbing(console, judged)
+    if text := judged.own.known_text:
+        hanging(console, "as written: ", text, style="yellow")
     console.print(Text(recommended_head(judged), "bold"))
     console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
     console.print(Text(harmless(verdict_text(judged)), STYLES[judged.verdict]))

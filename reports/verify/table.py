@@ -90,6 +90,7 @@ class CellTable:
 MARKS = {
     "within": Text("ok", "green"),
     "out": Text("OUT", "bold red"),
+    "known": Text("known", "yellow"),
     "unsupported": Text("NONE", "bold red"),
 }
 SHORT = {each.id: each.short for entry in QUANTITIES.values() for each in entry.criteria}
@@ -200,7 +201,7 @@ FORCE_TABLE = CellTable(
 
 def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
     """Print the whole verification."""
-    failed = [one for one in checked if one.cell.gated and one.verdict != "within"]
+    failed = [one for one in checked if one.cell.gated and one.verdict not in ("within", "known")]
     _failures(console, failed)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
@@ -211,6 +212,9 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
         if loaded:
             console.print(FORCE_TABLE.shown(profile, gated, loaded, console.width), "")
     _advice(console, checked)
+    for one in checked:
+        if text := one.known_text:
+            hanging(console, f"{one.cell.label}: ", text, style="yellow")
     console.print(_summary(checked, failed))
     console.print(footer(checked, facts), style="dim", highlight=False)
 
@@ -264,8 +268,10 @@ def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
     what = f"{count(len(gated), 'cell')} ({counted})"
     if failed:
         return Text(f"OUT OF TOLERANCE: {len(failed)} of {what}", "bold red")
-    every = "all " if len(gated) > 1 else ""
-    return Text(f"WITHIN TOLERANCE: {every}{what}", "bold green")
+    known = sum(one.verdict == "known" for one in gated)
+    every = f"{len(gated) - known} of " if known else "all " if len(gated) > 1 else ""
+    more = f"; {count(known, 'known failure')}" if known else ""
+    return Text(f"WITHIN TOLERANCE: {every}{what}{more}", "bold green")
 
 
 def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
@@ -289,6 +295,8 @@ def _case(one: Checked) -> Element:
         remark(case, "skipped", message=f"shown, not gated: {head}")
     elif one.verdict == "unsupported":
         remark(case, "error", text, message=head, type="unsupported")
+    elif one.is_known:
+        remark(case, "skipped", message=one.known_text)
     elif one.failures:
         remark(case, "failure", text, message=head, type=one.failures[0].rule)
     if one.advice:
