@@ -18,7 +18,7 @@ from reports.drawing.moving import told_places
 from reports.figures.drawing import ends
 from reports.figures.sheet import corner_words, grid, tenfold
 from reports.figures.style import INK, Look, power_of_ten
-from reports.output.numbers import short
+from reports.output.numbers import floor_words
 from reports.results.error_parts import ErrorParts, Split, split, worst_body
 from reports.results.lines import Line, label, named
 from reports.results.overview import Report, notes
@@ -85,7 +85,8 @@ def _cell(line: Line, parts: Split) -> ShownCell | None:
     if math.isnan(parts.floor):
         floor = "floor not told apart"
     else:
-        floor = f"floor {short(parts.floor)}" if parts.seen else "no floor seen"
+        words = floor_words(parts.floor if parts.seen else math.nan, parts.doubt)
+        floor = words.replace(" is ", "\nis ").replace(" by ", "\nby ")
     return ShownCell(float(row["steps_per_turn"]), parts.cells[str(row["key"])], floor)
 
 
@@ -99,4 +100,5 @@ def _panel(axes: Axes, cell: ShownCell, scene: Scene, unit: str) -> None:
     axes.yaxis.set_major_locator(MaxNLocator(4))
     if scene.driver.slider is None:
         axes.xaxis.set_major_formatter(FuncFormatter(lambda angle, _: f"{angle % 360:g}"))
-    corner_words(axes, 0.16, f"[{power_of_ten(cell.scale)} {unit}]", cell.floor)
+    room = 0.16 + 0.1 * cell.floor.count("\n")
+    corner_words(axes, room, f"[{power_of_ten(cell.scale)} {unit}]", cell.floor)
