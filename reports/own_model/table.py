@@ -16,7 +16,7 @@ from reports.judge.rows import cell_row, error_row
 from reports.judge.rules import RULES, titled
 from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import json_text
-from reports.output.numbers import count, error_text, listed, short
+from reports.output.numbers import count, error_text, listed, readable, short
 from reports.own_model.account import CheckedLine, ModelAccount, told
 from reports.own_model.judged import PARTS, JudgedModel, errors_of
 from reports.verify.table import HALVED, MARKS, halved, mark
@@ -167,10 +167,8 @@ def still_out(judged: JudgedModel) -> str:
 
 
 def share_text(share: float) -> str:
-    """Return a part of a limit: 12.3% of its limit, 34 times its limit."""
-    if share >= 1.0:
-        return f"{factor_text(share)} times its limit"
-    return f"{share:.1%} of its limit" if share >= 1e-3 else "below 0.1% of its limit"
+    """Return an error over its limit: 0.12 of its limit, 34 of its limit."""
+    return f"{readable(share, 2)} of its limit"
 
 
 def verdict_text(judged: JudgedModel) -> str:

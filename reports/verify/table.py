@@ -5,7 +5,7 @@ The heads of columns stand in `reports.quantities`, footers and room in ``report
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import cast
 from xml.etree.ElementTree import Element
@@ -22,7 +22,7 @@ from reports.judge.rules.rule import Finding
 from reports.judge.three_steps import Convergence
 from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, remark, suite_of
-from reports.output.numbers import count
+from reports.output.numbers import count, readable
 from reports.protocol.way import WAYS
 from reports.quantities import QUANTITIES, named
 
@@ -65,7 +65,7 @@ class CellTable:
         apart = width >= self.apart
         role = "gated" if gated else "shown, not gated"
         first = ("scene", "engine") if apart else ("scene\nengine",)
-        after = ("most of\na limit", *self.after_heads)
+        after = ("error /\nlimit", *self.after_heads)
         table = grid(
             ("", *first, *(f"{head}:" for head in (*heads, *before)), *after, HALVED),
             title=f"{self.title}profile {profile} ({role})",
@@ -75,15 +75,19 @@ class CellTable:
             least={first[0]: self.names} | ({HALVED: 15} if apart else {}),
         )
         table.columns[-1].max_width = None if apart else 14
+        shares = []
         for one in sorted(chosen, key=lambda one: one.verdict == "within"):
             names = (one.cell.scene.name, one.cell.engine)
             *numbers, share, seen = row_cells(one, heads, self.numbers, forces=self.forces)
             more = self.before(one)[: len(before)]
+            shares.append(str(share))
             table.add_row(
                 mark(one),
                 *(names if apart else ["\n".join(names)]),
                 *(*numbers, *more, share, *self.after(one), seen),
             )
+        table.caption = Text(_words_of_rules(shares), "dim")
+        table.caption_justify = "left"
         return table
 
 
@@ -143,9 +147,15 @@ def _share(findings: Sequence[Finding]) -> Text:
     share, name = max(shares, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
     if math.isnan(share):
         return Text("nan", "red")
-    size = f"{share:.0%}" if share < 10 else f"x{share:.0f}" if share < 1e4 else f"x{share:.0e}"
     style = "red" if share > 1 else "yellow" if share > 0.5 else ""
-    return Text(f"{size} {name}", style)
+    return Text(f"{readable(share, 2)} {name}", style)
+
+
+def _words_of_rules(shares: Iterable[str]) -> str:
+    """Return the meaning of the short names of rules behind such shares of a limit."""
+    named = dict.fromkeys(share.rpartition(" ")[2] for share in shares)
+    told = [f"{SHORT[rule]} {RULES[rule].title}" for rule in SHORT if SHORT[rule] in named]
+    return f"error / limit: {'; '.join(told)}" if told else ""
 
 
 UNITS, LINK_UNITS, OF_FORCES, MORE_UNITS, MORE_STEPS, NOTES, STEPS = range(7)
