@@ -1,14 +1,5 @@
-"""Known failures: a TOML file of cells that fail for a known reason, so that a gate is green.
-
-::
-
-    [[known]]
-    scene = "press"
-    engine = "pymunk"                # for a log: the name of its file
-    profile = "tuned"                # none for a log
-    drive = "prescribed"
-    reason = "an impulse solver does not reach the last part of the stroke"
-    rules = { CC103 = 0.012 }        # with the errors of that time, as pure numbers
+"""Known failures: a TOML file of cells that fail for a known reason, so that a gate is green
+(models/scenes/known-failures.toml). A log has the name of its file for an engine, and no profile.
 
 A cell is known where no other rule fails, and no error has grown by more than half. Of a run that
 did not end well only the status counts: the rest follows from it.
@@ -38,8 +29,7 @@ Names = tuple[str, str, str, str]
 
 
 class KnownFailure(BaseModel):
-    """A cell with the rules that it fails, each with its error as a pure number; infinite for one
-    without a number."""
+    """A cell with the rules that it fails, each with its error, pure; infinite for no number."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     scene: str
@@ -68,7 +58,6 @@ class Judged(Evidence):
 
     @property
     def names(self) -> Names:
-        """Its names in a file of known failures."""
         raise NotImplementedError
 
     @property
@@ -84,7 +73,6 @@ class Judged(Evidence):
 
     @property
     def is_known(self) -> bool:
-        """True if it fails as is known."""
         return bool(self.known and self.failures and not self.spoilt)
 
     @property
@@ -93,11 +81,10 @@ class Judged(Evidence):
         if self.known is None:
             return []
         before, sizes = self.known.rules, self.sizes
-        new = [f"{rule} is not known to fail" for rule in sizes if rule not in before]
-        return new + [
-            f"{rule} has grown from {before[rule]:.2g} to {size:.2g}"
-            for rule, size in sizes.items()
-            if rule in before and size > GROWTH * before[rule]
+        grown = [rule for rule in sizes if sizes[rule] > GROWTH * before.get(rule, math.inf)]
+        return [
+            *(f"{rule} is not known to fail" for rule in sizes if rule not in before),
+            *(f"{rule} has grown from {before[rule]:.2g} to {sizes[rule]:.2g}" for rule in grown),
         ]
 
     @property
@@ -124,9 +111,8 @@ One = TypeVar("One", bound=Judged)
 
 def marked(every: Sequence[One], path: Path | None, scenes: Sequence[str] = ()) -> list[One]:
     """Return judged cells, each with its known failure: of a file, by default the shipped one,
-    which is for shipped ones among the named ``scenes``. Raises CrankcheckError for a faulty
-    file."""
-    files = (at for at in find_scenes(scenes) if not at.is_relative_to(SCENE_FOLDER))
+    which is for the shipped among the named ``scenes``. Raises CrankcheckError for a bad file."""
+    files = [at for at in find_scenes(scenes) if not at.is_relative_to(SCENE_FOLDER)]
     own = {read_scene(at).name for at in files}
     found = {one.names: one for one in read_known(path or SHIPPED) if path or one.scene not in own}
     return [replace(one, known=found.get(one.names)) for one in every]
@@ -155,12 +141,9 @@ def known_file(every: Iterable[Judged]) -> str:
     """Return the text of a file of the failures among judged cells; known reasons are kept."""
     lines = ["# Known failures: `crankcheck verify --known` and this file; say why in each reason."]
     for one in every:
-        if not one.failures:
-            continue
-        reason = one.known.reason if one.known else titled(one.failures)[0][1].partition(";")[0]
-        rules = {rule: float(f"{size:.3g}") for rule, size in one.sizes.items()}
-        values = (*one.names, reason, rules)
-        keys = ("scene", "engine", "profile", "drive", "reason", "rules")
-        lines += ["", "[[known]]"]
-        lines += [f"{key} = {toml_value(value)}" for key, value in zip(keys, values, strict=True)]
+        if one.failures:
+            reason = one.known.reason if one.known else titled(one.failures)[0][1].partition(";")[0]
+            rules = {rule: float(f"{size:.3g}") for rule, size in one.sizes.items()}
+            entry = zip(KnownFailure.model_fields, (*one.names, reason, rules), strict=True)
+            lines += ["", "[[known]]", *(f"{key} = {toml_value(value)}" for key, value in entry)]
     return "\n".join(lines) + "\n"

@@ -137,16 +137,11 @@ def _number(error: Error | None) -> str:
 
 
 def _share(findings: Sequence[Finding]) -> Text:
-    shares = [
-        (finding.number / finding.limit, SHORT[finding.rule])
-        for finding in findings
-        if finding.rule in SHORT and finding.number is not None and finding.limit
-    ]
-    if not shares:
+    own = [each for each in findings if each.rule in SHORT and not math.isnan(each.taken)]
+    if not own:
         return Text("")
-    share, name = max(shares, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
-    if math.isnan(share):
-        return Text("nan", "red")
+    worst = max(own, key=lambda finding: finding.taken)
+    share, name = worst.taken, SHORT[worst.rule]
     style = "red" if share > 1 else "yellow" if share > 0.5 else ""
     return Text(f"{readable(share, 2)} {name}", style)
 
@@ -315,7 +310,5 @@ def _case(one: Checked) -> Element:
 
 
 def _line(finding: Finding) -> str:
-    rule = RULES[finding.rule]
-    return f"{rule.id} {rule.title}: {finding.text}" + (
-        f"\n  cure: {finding.cure}" if finding.cure else ""
-    )
+    ((rule, text),) = titled([finding])
+    return f"{rule} {text}" + f"\n  cure: {finding.cure}" * bool(finding.cure)
