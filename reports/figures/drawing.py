@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from reports.output.numbers import floor_words
 from reports.results.lines import Line, Named, named
 from reports.results.overview import Report
 
@@ -61,7 +62,7 @@ def fitted(line: Line) -> str:
     if fit.kind == "order":
         return order
     if fit.kind == "floor":
-        return f"floor {fit.floor:.1e}" + (f", {order}" if math.isfinite(fit.order) else "")
+        return floor_words(fit.floor) + (f", {order}" if math.isfinite(fit.order) else "")
     return WORDS.get(fit.kind, fit.kind)
 
 

@@ -18,7 +18,7 @@ from reports.drawing.moving import told_places
 from reports.figures.drawing import ends
 from reports.figures.sheet import corner_words, grid, one_scale, spaced, tenfold
 from reports.figures.style import INK, Look, power_of_ten
-from reports.output.numbers import short
+from reports.output.numbers import floor_words
 from reports.results.error_parts import ErrorParts, Split, split, worst_body
 from reports.results.lines import Line, label, named
 from reports.results.overview import Report, notes
@@ -62,7 +62,8 @@ def draw(report: Report, name: str) -> Figure | None:
             _panel(panel, one, scene)
     one_scale([panel for _, panel in shown])
     for one, panel in shown:
-        corner_words(panel, 0.16, f"[{power_of_ten(one.scale)} {unit}]", one.floor)
+        room = 0.16 + 0.1 * one.floor.count("\n")
+        corner_words(panel, room, f"[{power_of_ten(one.scale)} {unit}]", one.floor)
     return figure
 
 
@@ -89,7 +90,8 @@ def _cell(line: Line, parts: Split) -> ShownCell | None:
     if math.isnan(parts.floor):
         floor = "floor not told apart"
     else:
-        floor = f"floor {short(parts.floor)}" if parts.seen else "no floor seen"
+        words = floor_words(parts.floor if parts.seen else math.nan, parts.doubt)
+        floor = words.replace(" is ", "\nis ").replace(" by ", "\nby ")
     return ShownCell(float(row["steps_per_turn"]), parts.cells[str(row["key"])], floor)
 
 

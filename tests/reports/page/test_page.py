@@ -139,8 +139,9 @@ def test_it_is_whole_and_says_what_a_reviewer_asks(store: Path) -> None:
     assert "1 did not end well" in head
     assert "space.step(dt)" in text
     assert "<option timestep" in text
-    assert re.search(r"\| slotted-lever \| mujoco tuned \| order 2\.\d, no floor seen \|", text)
-    assert "| fourbar-lecture-1 | pymunk as-shipped | order 1.0, no floor seen |" in text
+    unseen = r"a floor below \S+ rad is not excluded by these steps"
+    assert re.search(rf"\| slotted-lever \| mujoco tuned \| order 2\.\d; {unseen} \|", text)
+    assert "| fourbar-lecture-1 | pymunk as-shipped | order 1.0; a floor below " in text
     failed = r"| slotted-lever | pymunk no bias | diverged | 720 | came apart \| \`at\` 1 s |"
     assert failed in text
     assert "crankcheck 0.0.0, mujoco" in text
