@@ -44,6 +44,23 @@ def check_file(
     _check_place(path, option)
 
 
+DOCUMENTS = (b"{", b"<?xml", b"<!doctype html", b"## crankcheck")
+TABLES = (b"scene,", b"fault,")
+"""First bytes of what commands write: JSON, JUnit, pages and Markdown that name crankcheck; CSV."""
+
+
+def _refuse_foreign(path: Path, option: str) -> None:
+    """Refuse a file that is there, with content, and is no document of a command. Raises
+    CrankcheckError."""
+    raw = path.read_bytes() if path.is_file() and not _is_stream(path) else b""
+    ours = raw.startswith(TABLES) or (raw.startswith(DOCUMENTS) and b"crankcheck" in raw)
+    if raw and not ours:
+        raise CrankcheckError(
+            f"{option} {path}: there is a file that crankcheck did not write; name another, or "
+            "remove it"
+        )
+
+
 def refuse_link(path: Path, option: str) -> None:
     """Refuse a symbolic link. Raises CrankcheckError that names its target."""
     if path.is_symlink():
@@ -141,6 +158,9 @@ class Outputs:
         read = list(inputs)
         for option, path in outputs:
             check_file(path, option, inputs=read)
+            if not option.startswith("--write"):  # scenes and maps, which their owner edits
+                with _looking_at(path, option):
+                    _refuse_foreign(path, option)
         if self.folder is not None:
             check_folder(self.folder, "-o", self.names, inputs=read)
             outputs += [("-o", self.folder / name) for name in self.names]

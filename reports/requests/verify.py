@@ -49,11 +49,11 @@ class VerifyRequest(VerifyOptions):
         refuse_of_models(self)
         cells = plan(self)
         outputs = Outputs(self.files, self.folder, IN_FOLDER)
-        outputs.check(find_scenes(self.names))
         if self.baseline is not None:  # which ``-o`` may go on from, and no other output write over
             from reports.requests.diff import stored_files
 
             Outputs(self.files).check(stored_files(self.baseline))
+        outputs.check(find_scenes(self.names))
         digests = _digests(self)
         silent = (
             silent_note(requirements.chosen_engines(())) if self.forces and not self.engines else ""
