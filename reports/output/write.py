@@ -44,6 +44,7 @@ def check_file(
     _check_place(path, option)
 
 
+PAGES = (".html", ".htm")
 DOCUMENTS = (b"{", b"<?xml", b"<!doctype html", b"## crankcheck")
 TABLES = (b"scene,", b"fault,")
 """First bytes of what commands write: JSON, JUnit, pages and Markdown that name crankcheck; CSV."""
@@ -150,6 +151,12 @@ class Outputs:
     files: Mapping[str, Path | None]
     folder: Path | None = None
     names: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Take a folder that is named as a page for the file of the option -o."""
+        if "-o" in self.names.values() and self.folder and self.folder.suffix in PAGES:
+            object.__setattr__(self, "files", {**self.files, "-o": self.folder})
+            object.__setattr__(self, "folder", None)
 
     def check(self, inputs: Iterable[Path | None] = ()) -> None:
         """Refuse files, and ``names`` in the folder, that could not be written, two of all these

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, get_type_hints
 
 import typer
 
@@ -77,6 +77,7 @@ Facets = Annotated[
     int | None, option("Cams by contact, of so many facets; default: as the scene says.", "N")
 ]
 Jobs = Annotated[int, option("Processes; 0: one per processor.", min=0, max=1024)]
+TextFormat = Annotated[Literal["text", "md"], option("What is printed.", "text|md")]
 PaperSize = Annotated[str, option("A5, A4, A3, A2, or WIDTHxHEIGHT in mm.", "SIZE")]
 
 
@@ -209,7 +210,9 @@ class VerifyOptions:
     junit: Annotated[Path | None, "Write JUnit XML."] = None
     csv: Annotated[Path | None, "Write the cells as CSV."] = None
     json: Annotated[Path | None, "Write cells and findings as JSON."] = None
-    folder: Annotated[Path | None, output_option("Write all of them into a folder.")] = None
+    folder: Annotated[
+        Path | None, output_option("Write all of them into a folder, or a page, .html.")
+    ] = None
     baseline: Annotated[
         Path | None, option("Folder of an earlier run; exit 1 when worse than it.", "DIR")
     ] = None
@@ -220,6 +223,7 @@ class VerifyOptions:
     segments: SegmentCount = None
     springs: SpringKind = None
     facets: Facets = None
+    format: TextFormat = "text"
     mjcf: Annotated[
         Path | None,
         of_model("A MuJoCo model, run as it is; needs --drive JOINT and --speed.", "FILE"),

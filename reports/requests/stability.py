@@ -24,11 +24,13 @@ from reports.requests.options import (
     Engines,
     Forces,
     Jobs,
+    TextFormat,
     argument,
     given,
     option,
     output_option,
 )
+from reports.requests.shown import Print, as_markdown, present
 from reports.selftest import trial
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.table import place_row, show_faults
@@ -55,6 +57,7 @@ class StabilityRequest:
     baseline: Annotated[
         Path | None, option("Folder, or JSON, of an earlier run; exit 1 when worse than it.", "DIR")
     ] = None
+    format: TextFormat = "text"
     limit_s: Annotated[float, "Longest time for a run, in seconds."] = 120.0
     memory_gb: Annotated[float, "Most memory for a run, in GB."] = 4.0
     jobs: Jobs = 0
@@ -97,10 +100,11 @@ class StabilityRequest:
             pictures=tuple(picture for line in graded for picture in line.pictures),
         )
         found = changes(base, matrix) if base else []
+        shows: list[Print] = [partial(show, matrix=matrix)]
+        shows += [partial(show_changes, found=found)] * bool(base)
         with outputs.written({name: partial(of, matrix) for name, of in CONTENTS.items()}):
-            show(console, matrix)
-            if base:
-                show_changes(console, found)
+            page = partial(as_markdown, "stability", *shows[::-1])
+            present(console, self.format, page, *shows)
         if self.folder is not None:
             say(console, f"{self.folder}: {', '.join(CONTENTS)}")
         return int(is_worse(found))

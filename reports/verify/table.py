@@ -211,7 +211,7 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
         if loaded:
             console.print(FORCE_TABLE.shown(profile, gated, loaded, console.width), "")
     _advice(console, checked)
-    console.print(_summary(checked, failed))
+    console.print(summary(checked))
     console.print(footer(checked, facts), style="dim", highlight=False)
 
 
@@ -256,8 +256,10 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
         console.print()
 
 
-def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
+def summary(checked: Sequence[Checked]) -> Text:
+    """Return the verdict on all gated cells, in a line."""
     gated = [one for one in checked if one.cell.gated]
+    failed = [one for one in gated if one.verdict != "within"]
     scenes = len({one.cell.scene.name for one in gated})
     engines = len({one.cell.engine for one in gated})
     counted = f"{count(scenes, 'scene')} x {count(engines, 'engine')}"
