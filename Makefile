@@ -102,7 +102,7 @@ oldest: $(VENV)/crankcheck
 		--editable . hypothesis pytest
 	$(OLDEST)/crankcheck verify
 	for engine in mujoco pymunk; do $(OLDEST)/crankcheck engines check $$engine || exit; done
-	$(OLDEST)/python -m pytest -q tests/reports/cli/test_each_command.py
+	$(OLDEST)/python -m pytest -q tests/reports/cli/test_each_command.py -W ignore::DeprecationWarning
 
 # Each Python of 3.11 or later that is to be had installs the wheel, also those of pyenv.
 PYTHONS ?= python3.11 python3.12 python3.13 python3.14

@@ -6,7 +6,7 @@ moved where these ranges of both runs have no value in common.
 """
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -25,6 +25,7 @@ from reports.stability.matrix import (
     label,
     read_matrix,
 )
+from reports.stability.running import CaseLine
 
 ROUNDING = 1.1
 """Growth of the largest error up to which another outcome is no change: two processors differ by
@@ -43,16 +44,11 @@ class LineChange:
     text: str
 
 
-def baseline(place: Path, planned: Collection[Line]) -> Matrix:
-    """Return the earlier run in a folder or file.
-
-    Raises
-    ------
-    CrankcheckError
-        It can not be read, or none of its lines is among the ``planned`` ones.
-    """
+def baseline(place: Path, planned: Iterable[CaseLine]) -> Matrix:
+    """Return the earlier run in a folder or file. Raises CrankcheckError where it can not be read,
+    or none of its lines is ``planned`` now."""
     old = read_matrix(place)
-    if not set(_lines(old)) & set(planned):
+    if not _lines(old).keys() & {(each.case, each.engine, each.profile) for each in planned}:
         held = few((" ".join(line) for line in _lines(old)), 3)
         raise CrankcheckError(
             f"--baseline {place}: holds no case, engine and profile that is to run now, but {held}"
@@ -88,15 +84,12 @@ def _changes(old: Matrix, new: Matrix, was: Critical, now: Critical) -> Iterator
     line = was.case, was.engine, was.profile
     case, before, after = new.case(was.case), _runs(old, line), _runs(new, line)
     unit = f" [{case.unit}]" if case.unit else ""
-    for value in case.values:
-        if value not in before or value not in after:
-            continue
-        pair = before[value], after[value]
-        ranks = [_rank(case, run) for run in pair]
-        if ranks[0] == ranks[1] or _within_rounding(*pair):
-            continue
-        words = f"at {label(value)}{unit} {pair[0].outcome} before, {pair[1].outcome} now"
-        yield LineChange("worse" if ranks[1] > ranks[0] else "better", line, words)
+    for value in (each for each in case.values if each in before and each in after):
+        first, last = before[value], after[value]
+        ranks = _rank(case, first), _rank(case, last)
+        if ranks[0] != ranks[1] and not _within_rounding(first, last):
+            words = f"at {label(value)}{unit} {first.outcome} before, {last.outcome} now"
+            yield LineChange("worse" if ranks[1] > ranks[0] else "better", line, words)
     harder = -1.0 if case.values[-1] < case.values[0] else 1.0
     moved: tuple[tuple[Word, Critical, Critical], ...] = ("worse", was, now), ("better", now, was)
     for word, hard, easy in moved:
