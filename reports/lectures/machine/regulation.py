@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -57,13 +56,6 @@ class MachineCycle(Shown):
     def extreme_speeds_rad_s(self) -> tuple[float, float]:
         """The largest and the smallest speed."""
         return self.details.extreme_speeds_rad_s
-
-    @property
-    def extreme_angles_deg(self) -> tuple[float, float]:
-        """The driver's angles at the largest and at the smallest speed."""
-        one = self.details
-        high, low = (math.degrees(one.driver_rad(u)) for u in (one.fastest, one.slowest))
-        return high, low
 
     @property
     def surplus_j(self) -> float:
