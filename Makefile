@@ -66,10 +66,10 @@ report: $(VENV)/crankcheck
 	$(BIN)/crankcheck figures out/study -o out/figures
 
 picture: $(VENV)/crankcheck
-	$(BIN)/crankcheck sweep fourbar-lecture-1 --engine all --profile as-shipped --profile tuned \
+	$(BIN)/crankcheck sweep fourbar-lecture-1 --engine all --profile as-shipped --profile tuned --turns 2 \
 		--steps-per-turn 90,180,360,720,1440 --jobs 1 -o out/picture
 	$(BIN)/crankcheck figures out/picture --only work-precision --scene fourbar-lecture-1 \
-		--width-mm 140 --no-notes --format svg -o docs/images
+		--width-mm 140 --no-title --no-notes --format svg -o docs/images
 
 hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard
