@@ -85,11 +85,7 @@ class StabilityRequest:
             CaseLine(case.name, engine_, profile, self.forces)
             for case, engine_, profile in itertools.product(cases, engines, profiles)
         ]
-        base = None
-        if self.baseline is not None:
-            base = baseline(
-                self.baseline, [(each.case, each.engine, each.profile) for each in lines]
-            )
+        base = baseline(self.baseline, lines) if self.baseline else None
         with progress_bar(progress, "lines", len(lines)) as advance:
             graded = run_lines(lines, self.jobs, limits, lambda _: advance())
         matrix = Matrix(
