@@ -104,4 +104,13 @@
   });
   error.addEventListener("change", errors);
   choose();
+  const lineOf = (at) => own.scenes.find((each) => each.name === at.scene)?.lines.find(({ look }) => String(look) === at.look);
+  crankcheck.leads("free", lineOf, (at) => {
+    const cell = lineOf(at).cells.find(({ dt_s }) => Math.abs(dt_s * Number(at.steps) - 1) < 1e-6);
+    scene.value = at.scene;
+    choose();
+    if (cell) step.value = cell.dt;
+    document.querySelector(`#free-legend [data-item="${at.look}"]`).checked ||= true;
+    moved();
+  });
 })();
