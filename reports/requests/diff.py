@@ -50,7 +50,7 @@ class DiffRequest:
         None
     )
     new_version: Annotated[str | None, "The same of NEW."] = None
-    format: Annotated[str, option("What is printed.", "text|md")] = "text"
+    format: Annotated[str, option("Form of the output.", "text|md")] = "text"
     output: Annotated[Path | None, output_option("Write Markdown, for a pull request.")] = None
     junit: Annotated[Path | None, "Write JUnit XML, a case per cell."] = None
 

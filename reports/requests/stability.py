@@ -41,7 +41,7 @@ class StabilityRequest:
     cases: Annotated[Sequence[str], argument("CASE", "Hard cases; all if none.")] = ()
     engines: Engines = ()
     profiles: Annotated[Sequence[str], option("Profile; may be repeated.", "--profile")] = ()
-    at: Annotated[float | None, "Only this value of the one case that is named."] = None
+    at: Annotated[float | None, "Only this value of the one named case."] = None
     folder: Annotated[Path | None, output_option("Folder for matrix, table and page.")] = None
     limit_s: Annotated[float, "Longest time for a run, in seconds."] = 120.0
     memory_gb: Annotated[float, "Most memory for a run, in GB."] = 4.0
@@ -91,7 +91,7 @@ def _cases(names: Sequence[str], asked: Mapping[str, bool]) -> list[Case]:
     kinds = [kind for kind, given in asked.items() if given]
     if len(kinds) > 1:
         both = " with ".join(f"--{kind}" for kind in kinds)
-        raise CrankcheckError(f"{both}: no case is of both; ask for one of them")
+        raise CrankcheckError(f"{both}: no case is of both; give one of them")
     for name in names:
         if name not in CATALOGUE:
             raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
@@ -189,7 +189,7 @@ class SelftestRequest:
         outputs.check()
         for name in engines:
             if name not in offering("spoiler"):
-                progress.print(f"engine {name}: it has no spoiler, so nothing is planted inside it")
+                progress.print(f"engine {name}: has no spoiler, so no fault is planted inside it")
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("planting", total=len(faults))
             names = [fault.name for fault in faults]
@@ -216,7 +216,7 @@ def _kind(request: SelftestRequest) -> RunKind:
     asked = [kind for kind in KINDS_ASKED if getattr(request, kind)]
     if len(asked) > 1:
         raise CrankcheckError(
-            f"--{asked[0]} with --{asked[1]}: the faults of either have runs of their own; ask for "
+            f"--{asked[0]} with --{asked[1]}: the faults of either have runs of their own; give "
             "one of them"
         )
     return asked[0] if asked else "motion"

@@ -237,9 +237,10 @@ class FlywheelRequest:
     written: Annotated[
         Path | None, option("Write the scene with the flywheel.", "--write FILE.toml")
     ] = None
-    free: Annotated[bool, "With --write: let go in its cycle, the drive's torque as a load."] = (
-        False
-    )
+    free: Annotated[
+        bool,
+        "With --write: a scene of free motion in its cycle, with the drive's torque as a load.",
+    ] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a flywheel. Raises CrankcheckError for a faulty request."""
@@ -255,7 +256,7 @@ class FlywheelRequest:
             if self.free:
                 scene = cycle_scene(found.cycle, flywheel=False)
             write(self.written, scene_text(scene, {scene.driver.link: found.inertia_kg_m2}))
-            told = ", let go in its steady cycle" * self.free
+            told = ", free in its steady cycle" * self.free
             say_whole(console, f"{self.written}: {found.cycle.machine.scene.name} with it{told}")
         cycle_rows.show_flywheel(console, found)
         return 0

@@ -150,7 +150,7 @@ class _DrawnScene:
 
 def _floor(found: Split) -> str:
     if not math.isfinite(found.floor):
-        return f"Model floor not told apart: {found.why}." if found.why else ""
+        return f"Model floor not separated: {found.why}." if found.why else ""
     if found.seen:
         return f"Model floor up to {error_text(found.floor)}, extrapolated to a step of zero."
     return (
@@ -201,7 +201,7 @@ class FreeCourses:
     def embedded(self) -> dict[str, object]:
         """Return the scene with its drawings; without a drawing where the store has no readable
         text of it, or no run that moved."""
-        lines, own = self.report.lines_of(self.name), self.report.of_kind("let go")
+        lines, own = self.report.lines_of(self.name), self.report.of_kind("free")
         time_s = self._instants(lines)
         ran = any(str(key) in self.sizes for line in lines for key in line.cells["key"])
         truth = self._truth(time_s) if ran else None
