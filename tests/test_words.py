@@ -1,5 +1,5 @@
-"""What users read is plain technical English: the worst phrases of old are refused, by `How we write`
-of docs/glossary.md."""
+"""What users read is plain technical English: the worst phrases are refused, as `How we write` of
+docs/glossary.md lists them."""
 
 import ast
 import re
@@ -32,7 +32,7 @@ def refused(text: str) -> set[str]:
 
 
 def texts(path: Path) -> Iterator[str]:
-    """What users may read of a file: constants and docstrings of Python, all of a page but comments."""
+    """What users may read of a file: constants and docstrings of Python, pages but for comments."""
     text = path.read_text(encoding="utf-8")
     if path.suffix != ".py":
         yield CODE.sub("", text) if path.suffix == ".js" else text

@@ -59,6 +59,11 @@ The exit code is 0 where some settings reach the target, 1 where none do."""),
 Plant faults in runs and check that a rule catches each.
 
 The exit code is 1 where one is not caught."""),
+    "explain": Command("requests.explain:ExplainRequest", COMPARE, """
+Explain a rule, or one cell: its error by part, what helps.
+
+A rule (CC110) or a clause of the contract (EC52): what it holds, why, how its limit comes about.
+A scene with --engine: its error by part, the limit that binds, and settings to turn."""),
     "judge": Command("requests.judge:JudgeRequest", OWN, """
 Compare a log of your own with the closed form.
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from reports.output.numbers import floor_words
 from sim.engine import AT_ROUNDING
 
 Trend = Literal[
@@ -57,7 +58,7 @@ class Convergence:
         if self.trend == "grows":
             return "does not shrink: it grows"
         if self.trend in ("does not shrink", "levels off"):
-            return f"{self.trend}: floor {self.floor:.1e}"
+            return f"{self.trend}: {floor_words(self.floor)}"
         return self.trend
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from models.errors import CrankcheckError, cut, few
+from models.files.assemble import toml_value
 from models.scene import Scene
 from reports.logs import column_meaning, instants, map_file
 from reports.logs.channel import Channel, GapColumn, OwnLog, Reading
@@ -232,20 +233,20 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     lines = [
         *map_file.HEAD,
         f"# Still to be filled in: {'; '.join(lacks)}.",
-        f"# The scene has {', '.join(map(map_file.toml_text, dict.fromkeys(every)))}.",
+        f"# The scene has {', '.join(map(toml_value, dict.fromkeys(every)))}.",
         "",
         *(map_file.file_lines(map_.file) or ["# [file]", '# decimal = ","', ""]),
         *map_file.table_lines("[time]", map_.time),
     ]
     if not times:
-        lines += [f"# column = {map_file.toml_text(name)}" for name in columns.raw]
+        lines += [f"# column = {toml_value(name)}" for name in columns.raw]
         lines.append('# unit = "s"')
     for name in others:
         lines.append("")
         if name in told:
             lines += map_file.table_lines("[[channel]]", told[name])
         elif name in bodies:
-            lines.append(f"# {map_file.toml_text(name)} is taken as its name says")
+            lines.append(f"# {toml_value(name)} is taken as its name says")
         else:
             lines += map_file.form_lines(name, _why_no_meaning(name, named))
     return "\n".join(lines) + "\n", "; ".join(lacks)

@@ -169,9 +169,7 @@ def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
 
 def _part(finding: Finding) -> float:
     """Return a finding as a part of its limit; infinite without numbers: how the run ended."""
-    if finding.number is None or not finding.limit:
-        return math.inf
-    return finding.number / finding.limit if math.isfinite(finding.number) else math.inf
+    return math.inf if math.isnan(finding.taken) else finding.taken
 
 
 Run = Callable[[ModelLine], CheckedLine]

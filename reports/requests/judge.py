@@ -17,7 +17,7 @@ from models.errors import CrankcheckError
 from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.judge import tolerance
+from reports.judge import known, tolerance
 from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
 from reports.output.formats import junit
@@ -92,6 +92,7 @@ def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[
         "--json": lambda: _json(judged, facts),
         "--junit": lambda: junit(suite(judged, facts)),
         "-o": page,
+        "--write-known": lambda: known.known_file([judged]),
     }
 
 
@@ -320,13 +321,17 @@ class JudgeRequest:
     forces: Annotated[bool, "Judge its columns of forces and torque as well."] = False
     segments: options.SegmentCount = None
     springs: options.SpringKind = None
+    known: options.KnownPath = None
+    write_known: options.WriteKnown = None
+    strict_known: options.StrictKnown = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 within, 1 out. Raises CrankcheckError for a log that
         can not be read and for a faulty request, before anything is written."""
         scene = outlined(load_scene(self.scene))
         scene = _released(scene, free=self.free)
-        outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
+        files = {"-o": self.output, "--json": self.json, "--junit": self.junit}
+        outputs = Outputs(files | {"--write-known": self.write_known})
         asked = _checked(self, scene, outputs)
         tolerance.check_names(scene)
         _refuse_other_targets(scene, asked.target)
@@ -336,7 +341,7 @@ class JudgeRequest:
             say_whole(console, f"{self.write_map}: {told}")
             return 0
         log = any_log.log_of(scene, self.log, self.map, forces=self.forces)
-        judged = judge_log(log, asked)
+        (judged,) = known.marked([judge_log(log, asked)], self.known)
         facts = provenance({})
         with outputs.written(contents(judged, facts)):
             if self.format == "md":
@@ -344,7 +349,7 @@ class JudgeRequest:
                 console.print(text, markup=False, highlight=False, soft_wrap=True)
             else:
                 show(console, judged, facts)
-        return int(judged.verdict == "out")
+        return int(judged.verdict == "out" or (self.strict_known and bool(judged.mended)))
 
 
 def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogRequest:
@@ -356,7 +361,8 @@ def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogReques
     if request.output is not None:
         check_file(request.output, "-o", (".html",))
     files = {"--write-map": request.write_map, **outputs.files}
-    Outputs(files).check((find_scene(request.scene), request.log, request.map))
+    Outputs(files).check((find_scene(request.scene), request.log, request.map, request.known))
+    known.marked([], request.known)  # raises for a faulty file
     drive = any_log.drive_of(request.drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")

@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, get_type_hints
 import typer
 
 from models.errors import CrankcheckError, shown
+from reports.figures.layout import Layout
 
 
 def seconds(text: str) -> float:
@@ -76,6 +77,11 @@ SpringKind = Annotated[
 Facets = Annotated[
     int | None, option("Cams by contact, of so many facets; default: as the scene says.", "N")
 ]
+KnownPath = Annotated[
+    Path | None, option("Known failures, as TOML; default: the shipped ones.", "FILE")
+]
+WriteKnown = Annotated[Path | None, "Write the failures of this run as known ones, as TOML."]
+StrictKnown = Annotated[bool, "Exit 1 where a known failure is right by now."]
 Jobs = Annotated[int, option("Processes; 0: one per processor.", min=0, max=1024)]
 PaperSize = Annotated[str, option("A5, A4, A3, A2, or WIDTHxHEIGHT in mm.", "SIZE")]
 
@@ -112,7 +118,7 @@ def named(place: str) -> Any:
 
 
 @dataclass(frozen=True)
-class SolveOptions:
+class SolveOptions(Layout):
     """Options of `solve` for scenes of any kind."""
 
     answered_by: ClassVar[str] = "requests.solve:SolveRequest"
@@ -220,6 +226,9 @@ class VerifyOptions:
     segments: SegmentCount = None
     springs: SpringKind = None
     facets: Facets = None
+    known: KnownPath = None
+    write_known: WriteKnown = None
+    strict_known: StrictKnown = False
     mjcf: Annotated[
         Path | None,
         of_model("A MuJoCo model, run as it is; needs --drive JOINT and --speed.", "FILE"),
@@ -246,7 +255,8 @@ class VerifyOptions:
     @property
     def files(self) -> dict[str, Path | None]:
         """The named files, by option."""
-        return {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
+        files = {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
+        return files | {"--write-known": self.write_known}
 
 
 OF_MODELS = ["speed_rad_s", "key", "start_deg", "branch", "write_scene", "limit_s", "memory_gb"]

@@ -12,7 +12,7 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes
 from models.scene import Scene
-from reports.judge import rows, tolerance
+from reports.judge import known, rows, tolerance
 from reports.judge.cell import Cell, Checked
 from reports.output.console import say_whole, tell
 from reports.output.formats import csv, json_text, junit, parquet
@@ -49,7 +49,8 @@ class VerifyRequest(VerifyOptions):
         refuse_of_models(self)
         cells = plan(self)
         outputs = Outputs(self.files, self.folder, IN_FOLDER)
-        outputs.check(find_scenes(self.names))
+        outputs.check([*find_scenes(self.names), self.known])
+        known.marked([], self.known)  # raises for a faulty file
         if self.baseline is not None:  # which ``-o`` may go on from, and no other output write over
             from reports.requests.diff import stored_files
 
@@ -66,6 +67,7 @@ class VerifyRequest(VerifyOptions):
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("verifying", total=len(cells))
             checked = check_all(cells, self.jobs, lambda _: bar.advance(task))
+        checked = known.marked(checked, self.known, self.names)
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
         diff = None
@@ -81,7 +83,8 @@ class VerifyRequest(VerifyOptions):
 
                 console.print()
                 show_diff(console, diff)
-        return _code(checked, diff, progress)
+        mended = self.strict_known and any(one.mended for one in checked)
+        return _code(checked, diff, progress) or int(mended)
 
 
 def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> int:
@@ -228,6 +231,7 @@ def contents(
         "verify.json": lambda: _json(checked, facts, digests),
         "verify.junit.xml": suites,
         "errors.parquet": lambda: parquet(rows.error_frame(checked)),
+        "--write-known": lambda: known.known_file(one for one in checked if one.cell.gated),
     }
 
 
@@ -240,6 +244,7 @@ def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping
             "not_reported": list(one.errors.not_reported) if one.errors else [],
             "notes": list(one.errors.notes) if one.errors else [],
             "findings": [vars(finding) for finding in one.findings],
+            "known": one.known_text,
         }
         for one in checked
     ]

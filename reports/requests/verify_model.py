@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from os import PathLike
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files.assemble import scene_text
+from reports.judge.known import known_file, marked
 from reports.judge.rows import cell_frame, error_frame
 from reports.judge.tolerance import parse
 from reports.output.formats import csv, junit, parquet
@@ -175,17 +176,20 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
         check_file(request.write_scene, "--write-scene", (".toml",))
     files = request.files | {"--write-scene": request.write_scene}
     outputs = Outputs(files, request.folder, IN_FOLDER)
-    outputs.check([asked.path])
+    outputs.check([asked.path, request.known])
+    marked([], request.known)  # raises for a faulty file
     account = read(asked, limits)
     outputs.check(account.files)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("running", total=len(account.profiles))
         judged = run_lines(account, limits, lambda _: bar.advance(task))
+    judged = replace(judged, lines=marked(judged.lines, request.known))
     name = reading_engine()
     facts = provenance({name: engine(name).version()})
     with outputs.written(_contents(judged, facts)):
         show(console, judged, facts)
-    return {"within": 0, "out": 1}.get(judged.verdict, 2)
+    mended = int(request.strict_known and bool(judged.own.mended))
+    return {"within": mended, "known": mended, "out": 1}.get(judged.verdict, 2)
 
 
 def _asked(request: VerifyOptions) -> ModelRequest:
@@ -234,6 +238,7 @@ def _contents(
         "verify.json": lambda: document(judged, facts),
         "verify.junit.xml": lambda: junit(suite(judged.lines, facts)),
         "errors.parquet": lambda: parquet(error_frame(judged.lines)),
+        "--write-known": lambda: known_file([judged.own]),
         "scene.toml": lambda: scene_text(judged.scene),
         # Empty where there is none: one of an earlier run must not stay.
         "recommended.diff": lambda: judged.patch if is_diff(judged.patch) else "",

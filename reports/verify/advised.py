@@ -103,13 +103,11 @@ def _share(checked: Checked, rule: str) -> float:
     if checked.status != "ok":
         return math.inf
     parts = [
-        finding.number / finding.limit
+        finding.taken
         for finding in checked.findings
         if finding.rule in ([rule] if rule else (*PLACES, *RATES, *FORCES))
-        and finding.number is not None
-        and finding.limit
     ]
-    return max((math.inf if math.isnan(part) else part for part in parts), default=math.inf)
+    return max((part for part in parts if not math.isnan(part)), default=math.inf)
 
 
 def _of_limit(after: float, before: float) -> str:

@@ -15,7 +15,7 @@ from models.scene import Scene
 from reports.compare.free_facts import window_means
 from reports.describe.facts import describe_law, facts
 from reports.drawing import moving, shape
-from reports.output.numbers import duration, error_text
+from reports.output.numbers import duration, floor_words
 from reports.page.sections.section import BUDGET, Section, chosen, steps_held
 from reports.results.error_parts import CurveBody, ErrorParts, Split, split, worst_body
 from reports.results.lines import Line
@@ -151,12 +151,8 @@ class _DrawnScene:
 def _floor(found: Split) -> str:
     if not math.isfinite(found.floor):
         return f"Model floor not separated: {found.why}." if found.why else ""
-    if found.seen:
-        return f"Model floor up to {error_text(found.floor)}, extrapolated to a step of zero."
-    return (
-        f"No model floor seen: the extrapolation to a step of zero is good to "
-        f"{error_text(found.doubt)}."
-    )
+    floor = floor_words(found.floor if found.seen else math.nan, found.doubt)
+    return f"Extrapolated to a step of zero: {floor}."
 
 
 INSTANTS = 721

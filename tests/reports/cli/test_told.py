@@ -160,7 +160,7 @@ def test_a_verdict_is_whole_at_every_width(checked: list[Checked], width: int) -
     table = text[text.index("profile tuned") : text.index("CC110")]
     assert max(len(line.rstrip()) for line in lines) <= width
     assert CLIPPED not in text
-    for part in (*NAMES, "mujoco", "pymunk", "most of", "when dt", "shrink", "floor"):
+    for part in (*NAMES, "mujoco", "pymunk", "error /", "when dt", "shrink", "floor"):
         assert part in table
     for one in checked:
         assert f" {one.errors.worst('angle').pure:.1e} " in table

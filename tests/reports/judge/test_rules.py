@@ -163,7 +163,7 @@ def test_what_no_limit_holds_has_rules_of_its_own(evidence: Evidence, rule: str,
 def test_an_error_that_does_not_shrink_is_advice_that_names_the_floor() -> None:
     found = by_rule(replace(HEALTHY, convergence=FLAT))["CC110"]
     assert found.level == "advice"
-    assert "does not shrink: floor 7.5e-04 rad" in found.text
+    assert "does not shrink: floor 7.5e-4 rad" in found.text
     assert "CC110" not in by_rule(replace(HEALTHY, convergence=None))
 
 
@@ -277,7 +277,7 @@ def test_words_tell_an_order_a_floor_and_growth_and_two_steps_are_too_few_for_th
     found = halved(*(1e-3 / 2 ** (1.5 * k) for k in range(3)))
     assert found.words == "order 1.5"
     assert found.order == pytest.approx(1.5)
-    assert halved(*over(7.5e-4, 1e-4)).words == "does not shrink: floor 7.5e-04"
+    assert halved(*over(7.5e-4, 1e-4)).words == "does not shrink: floor 7.5e-4"
     assert halved(1e-6, 2e-6, 4e-6).words == "does not shrink: it grows"
     with pytest.raises(ValueError, match="a floor needs three"):
         convergence((1e-3, 5e-4), (1e-3, 1e-3), "rad")
