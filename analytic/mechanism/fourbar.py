@@ -14,7 +14,7 @@ Source: R. L. Norton, Design of Machinery, chapters 2 (Grashof) and 4 (limits).
 A pin of a loop turns fully if the two links beside it can stand in line both ways. Of a four-bar a
 link turns fully against the others if s + l <= p + q; of a slider-crank (a crank r, a rod l, the
 line e beside the crank's pin) if the shorter of r and l, and e, are no longer together than the
-longer one; so it is of the inversion, a guide that turns about D, with the crank a and ground d::
+longer one; so it is for the inversion, a guide that turns about D, with the crank a and ground d::
 
       slider-crank                     inverted slider-crank
 

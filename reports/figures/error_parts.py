@@ -27,10 +27,10 @@ STEPS = 720
 """Steps per turn of the shown cells, or the nearest that ended well: as in verify."""
 LOOKS: dict[str, tuple[str, Look]] = {
     "total": ("total", {"color": "#cccccc", "linewidth": 3.0}),
-    "drive": ("drive: crank not where it is told to be", {"color": "#2f7d4c", "dashes": (1, 1)}),
-    "floor": ("model floor: left at a step of zero", {"color": "#c04a1d", "dashes": (4, 1.5)}),
-    "discretisation": ("discretisation: falls with the step", {"color": INK}),
-    "geometric": ("floor and discretisation, not told apart", {"color": INK, "dashes": (7, 1.5)}),
+    "drive": ("drive: crank off its commanded angle", {"color": "#2f7d4c", "dashes": (1, 1)}),
+    "floor": ("model floor: error at a step of zero", {"color": "#c04a1d", "dashes": (4, 1.5)}),
+    "discretisation": ("discretisation: shrinks with the step", {"color": INK}),
+    "geometric": ("floor and discretisation, not separated", {"color": INK, "dashes": (7, 1.5)}),
     "gap": ("closure: gap of the pins / L", {"color": "#4a90c9", "dashes": (5, 1.2, 1, 1.2)}),
 }
 """Legend and line of each part, in the order of `ErrorParts.curves`."""
@@ -88,7 +88,7 @@ def _cell(line: Line, parts: Split) -> ShownCell | None:
     away = [abs(math.log(n / STEPS)) for n in rows["steps_per_turn"]]
     row = rows.iloc[int(np.argmin(away))]
     if math.isnan(parts.floor):
-        floor = "floor not told apart"
+        floor = "floor not separated"
     else:
         words = floor_words(parts.floor if parts.seen else math.nan, parts.doubt)
         floor = words.replace(" is ", "\nis ").replace(" by ", "\nby ")

@@ -243,8 +243,8 @@ def loaded(turn: ForceTurn) -> Figure | None:
     drive, torque = scene.driver, readable(float(path.forces.torque[at]))
     title = f"{scene.name}, {driver_stands(scene, path, at)}"
     words = (
-        f"Where the reactions are largest; driving {drive.effort} {torque} {drive.effort_unit}. An "
-        "arrow is the force on the body of its colour, a black one that on a block."
+        f"At the largest reactions; driving {drive.effort} {torque} {drive.effort_unit}. An arrow "
+        "is the force on the body of its colour, a black one that on a block."
     )
     return mechanism_at(scene, path, at, arrows.box(path), title, [words, *turn.notes], arrows)
 
@@ -371,7 +371,7 @@ def _efficiency(turn: ForceTurn) -> Figure | None:
         if (samples := turn.acting.has_equilibria(number)).any():
             bands.append((samples, look))
             entries.append((Patch(**look), words))
-    notes = [*cycle_words(turn.scene, cycle), "No curve where no power goes on.", *turn.notes]
+    notes = [*cycle_words(turn.scene, cycle), "No curve without power on the way.", *turn.notes]
     panel = LinePanel("efficiency", [])
     figure, (axes,) = line_figure(turn, "Efficiency", [panel], notes, entries)
     for samples, look in bands:

@@ -101,7 +101,7 @@ def free_runs(report: Report, name: str) -> FreeRuns | None:
     """Return the runs of a scene; None where the store has no scene, or no traced run of it."""
     scene = report.scenes[name]
     mark_of = marks(report.lines)
-    lines = [line for line in report.of_kind("let go") if line.scene == name]
+    lines = [line for line in report.of_kind("free") if line.scene == name]
     runs = []
     for line in lines:
         done = line.cells[line.cells["status"] == "ok"]
@@ -131,7 +131,7 @@ def courses(report: Report, name: str) -> Figure | None:
     entries = [(Line2D([], [], **TRUTH), "truth, integrated")]
     entries += [(Line2D([], [], **run.mark.line), run.name) for run in shown.runs]
     panels = Panels(3, 1, 1.3, 0.55, 0.1, 0.12, between=(0.15, 0.12))
-    title = f"Let go: {name}, step {shown.steps}"
+    title = f"Free motion: {name}, step {shown.steps}"
     figure, (angle, speed, phase) = sheet(PAGE_IN, panels, title, entries, shown.notes)
     unit, size = shown.unit
     driver = shown.scene.driver.link

@@ -20,7 +20,7 @@ Trend = Literal[
     "grows",
     "at rounding",
     "as solved",
-    "as the truth",
+    "as the reference",
     "diverges",
 ]
 
@@ -92,7 +92,7 @@ def convergence(
         trend, order, floor = "as solved", math.nan, math.nan
     stays_or_shrinks = trend in ("shrinks", "levels off", "does not shrink")
     if stays_or_shrinks and max(second, third) <= known:
-        trend, order, floor = "as the truth", math.nan, math.nan
+        trend, order, floor = "as the reference", math.nan, math.nan
     elif trend == "levels off" and floor <= known:
         trend, floor = "shrinks", math.nan
     if cancels and trend == "levels off" and third <= STAYS * second:

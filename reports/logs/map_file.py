@@ -128,7 +128,7 @@ def _check_words(map_: Map, place: str) -> None:
     for one in map_.channel:
         where = f"[[channel]] {one.column!r}"
         if one.column in twice:
-            faults.append(f"{where}: told twice; leave one of them out")
+            faults.append(f"{where}: given twice; leave one of them out")
         twice.add(one.column)
         if one.unit is not None and one.unit not in DIMENSION:
             hint = suggestion(one.unit, DIMENSION, "use one of")

@@ -93,7 +93,7 @@ def understood(
     )
 
 
-STILL = "it is of a point of the ground, which does not move"
+STILL = "it belongs to a point of the ground, which does not move"
 
 
 def wanted(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
@@ -161,7 +161,7 @@ def judged_channels(
         if key in first:
             raise CrankcheckError(
                 f"two columns for one quantity, {each.name}: {first[key].column!r} and "
-                f"{each.column!r}; rename one, or say in a map what it is, or ignore = true"
+                f"{each.column!r}; rename one, or say in a map meaning, or ignore = true"
             )
         first[key] = each
         if each.kind.body_kind == "point" and each.of in scene.ground:
@@ -225,7 +225,7 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     angle *= scene.driver.is_crank and not scene.is_free
     lacks = [
         *([] if times else [f"the column of the times, in [time]{angle}"]),
-        *([] if bodies else ["of at least one column what it is of, in a [[channel]]"]),
+        *([] if bodies else ["of at least one column meaning of, in a [[channel]]"]),
     ]
     named = SceneNames(scene)
     points = (name for name in scene.pins if name not in scene.ground)
@@ -269,4 +269,4 @@ def _why_no_meaning(name: str, named: SceneNames) -> str:
         found = meaning(name, named)
     except CrankcheckError as error:
         return str(error)
-    return found if isinstance(found, str) else "it is of a point of the ground"
+    return found if isinstance(found, str) else "it belongs to a point of the ground"

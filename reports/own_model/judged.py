@@ -162,7 +162,7 @@ def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
     if error < HELPS * best:
         return one
     less = f"{short(error / best)} times less error" if best > 0.0 and error > 0.0 else "it runs"
-    now = "within tolerance" if last.verdict == "within" else "out of tolerance still"
+    now = "within tolerance" if last.verdict == "within" else "still out of tolerance"
     changed = replace(one, remedy=f"The recommended settings: {less}, {now}.")
     return replace(changed, findings=judge(changed))
 

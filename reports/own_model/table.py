@@ -119,7 +119,7 @@ def effect(judged: JudgedModel, kind: str) -> str:
 def factor_words(factor: float) -> str:
     """Return an error as written over another one, in words."""
     if math.isnan(factor):
-        return "not to be told"
+        return "unknown"
     if 0.99 < factor < 1.01:
         return "the same error"
     if factor > 1.0:

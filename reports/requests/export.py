@@ -59,8 +59,8 @@ class ExportRequest:
         own = under_control(outlined(load_scene(self.scene)))
         if any(not pair.facets for pair in own.cams.values()):
             raise CrankcheckError(
-                f"{own.name}: a cam as a relation is set anew at each step, by a program; a file "
-                "holds it for one angle alone: give the cam's table facets, for a cam by contact"
+                f"{own.name}: a program sets a cam as a relation at each step, and a file holds "
+                "one angle only: give the cam's table facets, for a cam by contact"
             )
         way = way_of(own)
         scene, start = way.opened(own)

@@ -99,8 +99,9 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
     if not figures:
         drives = {drive for name in names for drive in FIGURES[name].drives}
         raise CrankcheckError(
-            f"--only {', '.join(names)}: drawn over all scenes, or of what was "
-            f"{' or '.join(sorted(drives))}, which is not chosen; leave out --scene or --only"
+            f"--only {', '.join(names)}: drawn over all scenes, or for "
+            f"{' or '.join(sorted(drives))} scenes, which are not chosen; leave out --scene or "
+            "--only"
         )
     return figures
 
@@ -113,7 +114,7 @@ def _whole(report: Report, drawing: Drawing) -> Report | None:
     if report.driven is not None:
         return report.driven if "driven" in drawing.drives else report
     alike = len({line.way.name for line in report.lines}) < 2
-    return report if alike and "let go" in drawing.drives else None
+    return report if alike and "free" in drawing.drives else None
 
 
 def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:

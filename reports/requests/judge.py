@@ -73,7 +73,7 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
             write(path, text)
             return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
         write(path, text)
-        return f"what {log} says, as it was understood{''.join(entries.values())}"
+        return f"columns of {log}, as understood{''.join(entries.values())}"
 
 
 ENTRY = re.compile(r"(\w+) = '([^']+)' in \[(file|time)\]")
@@ -294,9 +294,9 @@ class JudgeRequest:
     scene: options.SceneName
     log: Annotated[Path, argument("LOG", "Your log: .csv, .tsv, .txt, .parquet or .xlsx.")]
     map: Annotated[Path | None, option("TOML that says what columns mean.", "FILE")] = None
-    write_map: Annotated[
-        Path | None, option("Write the map of what was understood, and end.", "FILE")
-    ] = None
+    write_map: Annotated[Path | None, option("Write the map as understood, and end.", "FILE")] = (
+        None
+    )
     drive: Annotated[str, "scene, fitted (speed and start), or logged (geometry at its angle)."] = (
         "scene"
     )
@@ -314,7 +314,7 @@ class JudgeRequest:
     json: Annotated[Path | None, "Write errors and findings as JSON."] = None
     junit: Annotated[Path | None, "Write JUnit XML, a case per error."] = None
     output: Annotated[Path | None, output_option("Write a page, .html.")] = None
-    free: Annotated[bool, "It is of the driven scene, let go at time 0."] = False
+    free: Annotated[bool, "The log is of the driven scene in free motion from time 0 on."] = False
     forces: Annotated[bool, "Judge its columns of forces and torque as well."] = False
     segments: options.SegmentCount = None
     springs: options.SpringKind = None

@@ -159,7 +159,7 @@ class SolveOptions(Layout):
         str | None,
         "Elastic links start periodic, quasi-static or straight (default the scene's own).",
     ] = None
-    linear: Annotated[bool, "Elastic links: leave out that a bent link is shorter."] = False
+    linear: Annotated[bool, "Elastic links: without the shortening of bent links."] = False
     family: Annotated[
         str | None,
         option(
@@ -208,7 +208,7 @@ class VerifyOptions:
     converge: Annotated[
         bool,
         option(
-            "Run at half and quarter step too, and say what the error does.",
+            "Run at half and quarter step too, and print the trend of the error.",
             "--convergence/--no-convergence",
         ),
     ] = True
@@ -224,7 +224,7 @@ class VerifyOptions:
     ] = None
     factor: Annotated[float, "Growth over the baseline that is no fault yet."] = 1.1
     forces: Forces = False
-    free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
+    free: Annotated[bool, "Free motion; all free scenes if none is named."] = False
     duration_s: Duration = None
     segments: SegmentCount = None
     springs: SpringKind = None
@@ -271,6 +271,6 @@ def refuse_of_models(request: VerifyOptions) -> None:
     """Refuse options that do not apply to scenes. Raises CrankcheckError."""
     for given_option in given(request, *OF_MODELS):
         raise CrankcheckError(
-            f"{given_option}: it is of a model of your own; name that with --mjcf FILE, or leave "
+            f"{given_option}: for a model of your own; name it with --mjcf FILE, or leave "
             f"{given_option} out"
         )

@@ -52,7 +52,7 @@ class StabilityRequest:
     cases: Annotated[Sequence[str], argument("CASE", "Hard cases; all if none.")] = ()
     engines: Engines = ()
     profiles: Annotated[Sequence[str], option("Profile; may be repeated.", "--profile")] = ()
-    at: Annotated[float | None, "Only this value of the one case that is named."] = None
+    at: Annotated[float | None, "Only this value of the one named case."] = None
     folder: Annotated[Path | None, output_option("Folder for matrix, table and page.")] = None
     baseline: Annotated[
         Path | None, option("Folder, or JSON, of an earlier run; exit 1 when worse than it.", "DIR")
@@ -111,7 +111,7 @@ def _cases(names: Sequence[str], asked: Mapping[str, bool]) -> list[Case]:
     kinds = [kind for kind, given in asked.items() if given]
     if len(kinds) > 1:
         both = " with ".join(f"--{kind}" for kind in kinds)
-        raise CrankcheckError(f"{both}: no case is of both; ask for one of them")
+        raise CrankcheckError(f"{both}: no case is of both; give one of them")
     for name in names:
         if name not in CATALOGUE:
             raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
@@ -212,7 +212,7 @@ class SelftestRequest:
         outputs.check()
         for name in engines:
             if name not in offering("spoiler"):
-                progress.print(f"engine {name}: it has no spoiler, so nothing is planted inside it")
+                progress.print(f"engine {name}: has no spoiler, so no fault is planted inside it")
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("planting", total=len(faults))
             names = [fault.name for fault in faults]
@@ -239,7 +239,7 @@ def _kind(request: SelftestRequest) -> RunKind:
     asked = [kind for kind in KINDS_ASKED if getattr(request, kind)]
     if len(asked) > 1:
         raise CrankcheckError(
-            f"--{asked[0]} with --{asked[1]}: the faults of either have runs of their own; ask for "
+            f"--{asked[0]} with --{asked[1]}: the faults of either have runs of their own; give "
             "one of them"
         )
     return asked[0] if asked else "motion"

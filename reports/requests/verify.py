@@ -159,14 +159,14 @@ def _scenes(request: VerifyOptions) -> list[Scene]:
 def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
     if request.drive not in ("prescribed", "servo"):
         raise CrankcheckError(
-            f"--drive {request.drive!r}: unknown; use prescribed or servo, let scenes go with "
-            "--free, or name the model whose joint that is with --mjcf FILE"
+            f"--drive {request.drive!r}: unknown; use prescribed or servo, --free for free motion, "
+            "or name the model with that joint with --mjcf FILE"
         )
     other = [scene.name for scene in scenes if request.drive not in way_of(scene).drives]
     if other and request.drive != PRESCRIBED:
         raise CrankcheckError(
-            f"--drive {request.drive}: {other[0]} is let go, and nothing drives it; leave --drive "
-            "out, or the scene"
+            f"--drive {request.drive}: {other[0]} is in free motion, without a drive; leave "
+            "--drive out, or the scene"
         )
     lengths = {"--duration": request.duration_s, "--turns": request.turns}
     lengths["--steps-per-turn"] = request.steps_per_turn

@@ -198,9 +198,7 @@ def _asked(request: VerifyOptions) -> ModelRequest:
     """The request for the model. Raises CrankcheckError for options that do not apply to it."""
     assert request.mjcf is not None
     for option in given(request, *NOT_OF_MODELS):
-        raise CrankcheckError(
-            f"--mjcf and {option}: a model of your own runs by itself, as it is; leave out one"
-        )
+        raise CrankcheckError(f"--mjcf and {option}: a model of your own runs alone; leave out one")
     if request.speed_rad_s is None:
         raise CrankcheckError("--speed is missing: give that of the crank in rad/s, such as 10")
     return ModelRequest(

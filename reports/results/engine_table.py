@@ -21,7 +21,7 @@ FEWEST = 3
 """Engines from which on they are put side by side."""
 NEAR_S = 1e-3
 TARGETS = (1e-3, 1e-4)
-FREE = ("let go",)
+FREE = ("free",)
 FORCES = "reaction_pure"
 
 

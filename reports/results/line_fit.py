@@ -68,7 +68,7 @@ class LineFit:
 
     @property
     def finest_error(self) -> float:
-        """Error at the finest step that ended well; NaN where none did."""
+        """Error at the finest step without failure; NaN where none did."""
         return self.runs[0][1] if self.runs else math.nan
 
     @property

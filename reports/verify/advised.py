@@ -69,12 +69,12 @@ def _remedy(checked: Checked, choices: Sequence[Settings]) -> str:
     still = ", ".join(outcomes[best].failing)
     if outcomes[best].share < math.inf and HELPS * outcomes[best].share <= before:
         return f"Tried at the same step: {left}" + (f"; still out by {still}." if still else ".")
-    none = f"Nothing tried at the same step lowers the error threefold: {', '.join(outcomes)}."
+    none = f"No tried setting lowers the error threefold at the same step: {', '.join(outcomes)}."
     if not still:
         return f"{none} But {left}."
     half = _outcome(checked, replace(cell, dt_s=cell.dt_s / 2, steps=2 * cell.steps), rule)
     if half.share == math.inf:
-        return f"{none} Half the step mends nothing."
+        return f"{none} Half the step does not help."
     return f"{none} Half the step leaves {_of_limit(half.share, before)}."
 
 

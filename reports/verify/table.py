@@ -156,8 +156,8 @@ def _words_of_rules(shares: Iterable[str]) -> str:
 UNITS, LINK_UNITS, OF_FORCES, MORE_UNITS, MORE_STEPS, NOTES, STEPS = range(7)
 """Places of parts: units and steps of cells, with those of free motion between."""
 OF_FORCES_WORDS = (
-    "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
-    "torque over the run."
+    "Forces against kinetostatics at their own instants; F largest reaction, M largest torque over "
+    "the run."
 )
 
 

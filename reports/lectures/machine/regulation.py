@@ -231,9 +231,10 @@ class FlywheelRequest(Layout):
     written: Annotated[
         Path | None, option("Write the scene with the flywheel.", "--write FILE.toml")
     ] = None
-    free: Annotated[bool, "With --write: let go in its cycle, the drive's torque as a load."] = (
-        False
-    )
+    free: Annotated[
+        bool,
+        "With --write: a scene of free motion in its cycle, with the drive's torque as a load.",
+    ] = False
 
     @laid_out
     def run(self, console: Console, progress: Console) -> int:
@@ -250,7 +251,7 @@ class FlywheelRequest(Layout):
             if self.free:
                 scene = cycle_scene(found.cycle, flywheel=False)
             write(self.written, scene_text(scene, {scene.driver.link: found.inertia_kg_m2}))
-            told = ", let go in its steady cycle" * self.free
+            told = ", free in its steady cycle" * self.free
             say_whole(console, f"{self.written}: {found.cycle.machine.scene.name} with it{told}")
         cycle_rows.show_flywheel(console, found)
         return 0

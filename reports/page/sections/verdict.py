@@ -93,7 +93,7 @@ def level(gated: pd.DataFrame) -> str:
 def verdict(gated: pd.DataFrame) -> str:
     """Return the sentence for all gated cells: profile tuned without overrides."""
     if gated.empty:
-        return "No verdict: the store has no cells of profile tuned, which is what is judged."
+        return "No verdict: the store has no cells of profile tuned, the judged profile."
     within, number = int((gated["verdict"] == "within").sum()), len(gated)
     engines = listed(list(dict.fromkeys(gated["engine"])))
     if within == number:
@@ -120,9 +120,9 @@ def _held(row: VerdictRow) -> str:
     manner = f"As {name}," if "," in name else f"With {name} settings"
     text = f"{manner} it is within tolerance in {_share(row)}"
     if row.failed:
-        text += f", and {count(row.failed, 'run')} of them did not end well"
+        text += f", and {count(row.failed, 'run')} of them failed"
     if row.orders:
-        text += f"; its error falls with order {row.order} of the step"
+        text += f"; its error shrinks with order {row.order} of the step"
     if row.floors:
         return f"{text}, with a floor at {row.floor}."
     unseen = floor_words(math.nan, row.below) or "too few steps to see a floor"

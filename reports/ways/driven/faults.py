@@ -32,7 +32,7 @@ def words(scenes: Collection[str]) -> Sequence[str]:
 
 SETTINGS = {"steps_per_turn": STEPS, "turns": 1}
 GROUPS = {
-    "request": "another run than was asked for",
+    "request": "another run than requested",
     "reference": "numbers that are the reference's",
     "scene": "another mechanism in the engine",
     "pair": "another gear or cam in the engine",

@@ -1,4 +1,4 @@
-"""`crankcheck export`, of what is let go or bends as well: a model that runs as it is; `view`,
+"""`crankcheck export`, of what is free or bends as well: a model that runs as it is; `view`,
 `scenes` and `engines`; and `run`, the log of a run, with `recipe`."""
 
 import re

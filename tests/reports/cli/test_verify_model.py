@@ -63,7 +63,7 @@ REFUSED = {
     },
     **{
         f"verify fourbar-lecture-1 {option}":
-        f"{option.split()[0]}: it is of a model of your own; name that with --mjcf"
+        f"{option.split()[0]}: for a model of your own; name it with --mjcf"
         for option in ("--speed 3", "--key home", "--start 3", "--branch C=1",
                        "--write-scene a.toml", "--limit-s 3", "--memory-gb 3")
     },
@@ -122,7 +122,7 @@ LATE = "</worldbody><include file='parts/late.xml'/>"
     ("text", "why"),
     [
         (SLIDER_CRANK.replace("<mujoco", LATIN, 1), "the file is not UTF-8"),
-        (SLIDER_CRANK.replace("</worldbody>", LATE), "what it includes overrides the file itself"),
+        (SLIDER_CRANK.replace("</worldbody>", LATE), "its includes override the file itself"),
     ],
 )
 def test_what_can_not_be_a_diff_is_in_a_text_and_no_diff_is_left(text: str, why: str) -> None:

@@ -52,7 +52,12 @@ LABELS = {
     "profile": ("time over that of the fastest [-]", "share of the scenes [%]", "error up to 10⁻²"),
 }
 FREE_LABELS = {
-    "let-go": ("angle of crank [deg]", "speed [rad/s]", "error of angle / G [rad]", "time [s]"),
+    "free-motion": (
+        "angle of crank [deg]",
+        "speed [rad/s]",
+        "error of angle / G [rad]",
+        "time [s]",
+    ),
     "energy": ("change of energy / largest kinetic energy", "drift", "means over windows"),
     "phase": ("angular velocity [rad/s]", "truth, integrated", "pymunk as-shipped"),
     "convergence": ("time step", "4 ms", "2 ms", "largest error / sensitivity"),
@@ -62,7 +67,7 @@ FAULTS = {
     "--scene slotted-levr: no such scene here; did you mean slotted": (["slotted-levr"], []),
     "--only profil: no such figure here; did you mean profile": ([], ["profil"]),
     "leave out --scene": ([SCENES[0]], ["profile"]),
-    "of what was let go": ([], ["let-go"]),
+    "of what was let go": ([], ["free-motion"]),
 }
 
 
@@ -196,7 +201,7 @@ DRIVEN = [name for name, drawing in FIGURES.items() if "driven" in drawing.drive
 SHOWN = [(name, scene) for name in DRIVEN for scene in (*SCENES, None)]
 EMPTY = {("split", None), ("mechanism", None), *(("profile", scene) for scene in SCENES)}
 QUICK = {(n, scene) for n in DRIVEN for scene in (SCENES[1], None)} - {("profile", SCENES[1])}
-OF_FREE = [name for name, drawing in FIGURES.items() if "let go" in drawing.drives]
+OF_FREE = [name for name, drawing in FIGURES.items() if "free" in drawing.drives]
 OTHER = "what differs between figures is that one is of a scene, of all, or of what was let go"
 
 
@@ -249,7 +254,7 @@ def test_words_keep_off_others_and_the_edge(report: Report, shown: tuple[str, st
 
 
 @pytest.mark.usefixtures("any_width")
-@pytest.mark.parametrize("name", few(OF_FREE, {"let-go", "energy"}, OTHER))
+@pytest.mark.parametrize("name", few(OF_FREE, {"free-motion", "energy"}, OTHER))
 def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: str) -> None:
     free = Report(read_store(free_store))
     has_room(figure_of, free, name, LET_GO)

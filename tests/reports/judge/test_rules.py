@@ -210,7 +210,7 @@ FLOOR = {n: replace(HEALTHY, convergence=FLAT, profile=n) for n in ("as-shipped"
     ("evidence", "rule", "said", "not_said"),
     [
         (FLOOR["as-shipped"], "CC110", "use profile tuned", "nothing else"),
-        (FLOOR["tuned"], "CC110", "change what the engine models", "profile tuned"),
+        (FLOOR["tuned"], "CC110", "change the model of the engine", "profile tuned"),
         (with_row(row("angle", maximum=3.0), remedy=TRIED), "CC103", TRIED, "servo"),
         (with_row(row("drive", maximum=3.0), remedy=TRIED), "CC102", "servo", TRIED),
         (replace(HEALTHY, status="diverged", profile="tuned"), "CC101", "shorter step", "tuned"),
@@ -251,7 +251,7 @@ TRUTH = {"known": 4e-5}
         ((7e-4, 7e-4, 7e-4), {}, "does not shrink", 7e-4),
         ((7.5e-4, 8.3e-4, 8.7e-4), {}, "does not shrink", 8.7e-4),  # wanders a little upwards
         ((3e-10, 4e-13, 6e-13), {}, "at rounding", NONE),
-        ((8e-5, 4e-5, 3e-5), TRUTH, "as the truth", NONE),  # all of it may be the truth's
+        ((8e-5, 4e-5, 3e-5), TRUTH, "as the reference", NONE),  # all of it may be the truth's
         ((3e-4, 1.0e-4, 5e-5), TRUTH, "shrinks", NONE),  # down to a floor that may be
         ((3e-4, 2.5e-4, 2.4e-4), TRUTH, "does not shrink", 2.375e-4),
         ((1e-3, 1e-4, math.nan), {}, "diverges", NONE),

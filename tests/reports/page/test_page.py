@@ -136,7 +136,7 @@ def test_it_is_whole_and_says_what_a_reviewer_asks(store: Path) -> None:
     head, *_ = text.split("### What to set")
     assert head.startswith("## crankcheck: within tolerance\n")
     assert "all 8 tuned cells" in head
-    assert "1 did not end well" in head
+    assert "1 failed" in head
     assert "space.step(dt)" in text
     assert "<option timestep" in text
     unseen = r"a floor below \S+ rad is not excluded by these steps"

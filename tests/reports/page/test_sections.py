@@ -71,7 +71,7 @@ def test_the_sentence_of_an_engine_tells_order_cost_and_floor() -> None:
     shipped = line("a", "as-shipped", [3e-3, 2.1e-3, 2.01e-3, 2e-3], limit=0.0)
     found = sentences(shipped, TUNED)["mujoco"]
     assert "With tuned settings it is within tolerance in 4 of 4 cells" in found
-    assert "its error falls with order 2.0 of the step; a floor below " in found
+    assert "its error shrinks with order 2.0 of the step; a floor below " in found
     assert "Cheapest for an error of 1e-4 on every scene: tuned at 360 steps a turn" in found
     assert "720 µs a turn" in found
     assert "As shipped it is within tolerance in 0 of 4 cells: on 1 of 1 scene" in found
@@ -83,7 +83,7 @@ def test_the_sentence_of_an_engine_tells_order_cost_and_floor() -> None:
 
 def test_what_reaches_nothing_and_what_fails_is_said() -> None:
     found = sentences(line("a", "tuned", [1e-2, 5e-3, math.inf, math.inf]))["mujoco"]
-    assert "2 runs of them did not end well" in found
+    assert "2 runs of them failed" in found
     assert "For an error of 1e-4 on every scene: nearest is tuned at" in found
     fails = line("b", "tuned", second_order(1e-6))
     fails[-1]["status"] = "branch-changed"

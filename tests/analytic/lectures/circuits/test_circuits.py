@@ -178,7 +178,7 @@ def test_defects_are_told_apart() -> None:
     other = circuits.circuits[1 - number][0]
     there = Position(sum(other.range_rad) / 2, other.signs)
     assert circuits.defect([first, there]) == "circuit"
-    with pytest.raises(CrankcheckError, match="can not be assembled; with these signs it can at"):
+    with pytest.raises(CrankcheckError, match="can not be assembled; these signs can at"):
         circuits.place(Position(math.pi, own.signs))
 
 

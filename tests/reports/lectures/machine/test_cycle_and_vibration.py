@@ -160,7 +160,7 @@ MOTORISED = shaft(
 def test_in_python_results_are_small_values_that_print_as_the_commands() -> None:
     found = crankcheck.cycle(MOTORISED)
     assert found.mean_rad_s == pytest.approx(10.0, rel=0.01)
-    assert "Let go: the loads alone settle the speed." in str(found)
+    assert "Free motion: the loads alone settle the speed." in str(found)
     assert found.frame()["crank_omega_rad_s"].max() == pytest.approx(
         found.extreme_speeds_rad_s[0], rel=1e-5
     )
@@ -271,7 +271,7 @@ MAP = "fourbar-elastic --map"
             f"{MAP} coupler",
             "inertia of coupler: it is elastic, and its own mass is that of the beam; use rocker",
         ),
-        (f"{MAP} crank", "inertia of crank: its speed is told, whatever its inertia; use rocker"),
+        (f"{MAP} crank", "inertia of crank: its speed is given, whatever its inertia; use rocker"),
         (f"{MAP} lever", "inertia of lever: no link or slider of that name; use rocker"),
         ("fourbar-elastic --factors 1:2:3", "give --map LINK"),
     ],
@@ -288,4 +288,4 @@ def test_a_resonance_and_a_law_that_does_not_last_end_with_2() -> None:
     )
     law = {"start_deg": 'law = "from-rest"\nrise_s = 0.2\nstart_deg', '"periodic"': '"straight"'}
     brief = crank("vibration", scene_at(10.5, **law))
-    refused(brief, "vibration is told of a driver at constant speed")
+    refused(brief, "vibration needs a driver at constant speed")
