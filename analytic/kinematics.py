@@ -149,8 +149,8 @@ def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice],
     law = scene.driver.law
     if scene.is_free and np.any(time_s != 0.0):
         raise CrankcheckError(
-            f"{scene.name}: its driver is let go, and follows no law but at time 0; its motion is "
-            "that of `analytic.free`"
+            f"{scene.name}: free motion, whose driver follows no law after time 0; solve it with "
+            "`analytic.free`"
         )
 
     def driver(span: slice) -> Driven:

@@ -31,7 +31,7 @@ def numbers(values: ArrayLike, what: str) -> Array:
             raw = np.reshape([float(each) for each in raw.ravel()], raw.shape)
         return np.array(raw, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        found = f"what is no number ({cut(str(error), 200)})"
+        found = f"values that are no numbers ({cut(str(error), 200)})"
         raise _no_numbers(what, found, "give floats") from None
 
 

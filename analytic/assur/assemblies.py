@@ -103,7 +103,7 @@ def assemblies(rows: LegRows) -> tuple[TriadAssembly, ...]:
             except _BluntError:
                 continue
             return tuple(sorted(every, key=lambda one: (one.angle_rad, one.place)))
-    raise CrankcheckError("the assemblies of the central link could not be told apart")
+    raise CrankcheckError("the assemblies of the central link could not be distinguished")
 
 
 def _at_roots(rows: LegRows, size: float) -> list[TriadAssembly]:

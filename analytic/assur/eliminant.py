@@ -174,7 +174,7 @@ class ContinuumError(CrankcheckError):
 
     def __init__(self) -> None:
         super().__init__(
-            "the central link can move while all that it hangs on stands still; change a length"
+            "the central link can move while its neighbours stand still; change a length"
         )
 
 

@@ -171,9 +171,9 @@ class AssurStep(FollowedStep):
                 at = told(self.scene, track.crossings[k].theta)
                 raise CrankcheckError(
                     f"{self.scene.name}: at {self.scene.driver.joint} {at} the group about "
-                    f"{self.key} is in a change point with no smooth motion through it that can be "
-                    "told from others to within rounding: change a length, or keep the driver's "
-                    "range away from there"
+                    f"{self.key} is in a change point whose smooth motion cannot be distinguished "
+                    "from others within rounding: change a length, or keep the driver's range away "
+                    "from there"
                 )
         return replace(solved, body=body), closes
 

@@ -166,9 +166,9 @@ class _ValleySearch:
             raise CrankcheckError(
                 f"{self.scene.name}: at {self.scene.driver.joint} "
                 f"{told(self.scene, whole_turns_off(float(theta[unsure][0])))} the dyad of "
-                f"{self.steps[-1].key} is singular to within the rounding of the change point of "
-                "a dyad before it, so that its motion is not determined there, nor which branch "
-                "it is on beyond: change a length"
+                f"{self.steps[-1].key} is singular to within the rounding of the change point of a "
+                "dyad before it, so its motion is not determined there, nor its branch beyond: "
+                "change a length"
             )
         return touched
 

@@ -306,9 +306,9 @@ class ChangePoints:
             angle = whole_turns_off(float(chunk.theta[inside][0]))
             raise CrankcheckError(
                 f"{self.scene.name}: at {self.scene.driver.joint} {told(self.scene, angle)} the "
-                f"dyad of {self.key} is in a change point with no smooth motion through it that "
-                "can be told from others to within rounding; another singular position is too "
-                "near: change a length, or keep the driver's range away from there"
+                f"dyad of {self.key} is in a change point whose smooth motion cannot be "
+                "distinguished from others within rounding; another singular position is too near: "
+                "change a length, or keep the driver's range away from there"
             )
 
     def piece(self, i: int) -> SignPiece | None:

@@ -162,8 +162,8 @@ class DrivenElasticMotion:
         last = float(instants.max(initial=0.0))
         if self.start != "periodic" and last > self.until_s * (1.0 + 1e-12):
             raise CrankcheckError(
-                f"{self.scene.name}: asked for {last:g} s, and its elastic links are followed up "
-                f"to {self.until_s:g} s; ask for that, or follow them further"
+                f"{self.scene.name}: {last:g} s requested, and its elastic links are followed up "
+                f"to {self.until_s:g} s; request that, or follow them further"
             )
         form, assembly = self.form, self.form.assembly
         now, seconds = self.instant(instants)

@@ -170,10 +170,10 @@ def check_periodic(form: ReducedForm) -> None:
     for first, second in ((now.force, later.force), (now.mass, later.mass)):
         if np.abs(first - second).max() > COMES_BACK * np.abs(first).max():
             raise CrankcheckError(
-                f"{form.assembly.scene.name}: its elastic links have no periodic motion: what "
-                f"moves them is not the same {form.period_s:.6g} s later; drive it at a constant "
-                "speed, with loads that repeat each turn, or start from another shape "
-                '([start] shape = "quasi-static")'
+                f"{form.assembly.scene.name}: its elastic links have no periodic motion: their "
+                f"loads are not the same {form.period_s:.6g} s later; drive it at a constant "
+                "speed, with loads that repeat each turn, or start from another shape ([start] "
+                'shape = "quasi-static")'
             )
 
 

@@ -82,7 +82,7 @@ class ReducedForm:
         if assembly.joints.count != len(self._rest):
             raise CrankcheckError(
                 f"{assembly.scene.name}: {assembly.joints.count} equations of joints for "
-                f"{len(self._rest)} coordinates: with a told driver and elastic links the "
+                f"{len(self._rest)} coordinates: with a driven joint and elastic links the "
                 "mobility has to be 1, and no joint redundant"
             )
 
@@ -208,8 +208,8 @@ def quasi_static(form: ReducedForm, time_s: float) -> Array:
             return np.asarray(z)
         last = size
     raise CrankcheckError(
-        f"{form.assembly.scene.name}: at {time_s:g} s its elastic links find no rest under what "
-        "bends them: they are pushed harder than they bear; make them stiffer, or drive slower"
+        f"{form.assembly.scene.name}: at {time_s:g} s its elastic links have no equilibrium under "
+        "their loads; make them stiffer, or drive slower"
     )
 
 

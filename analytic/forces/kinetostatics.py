@@ -184,10 +184,9 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
 def _locked(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
     place = told(scene, sample(chunk.theta, index))
     return (
-        f"{scene.name}: {scene.driver.joint} at {place} (t = {time_s[index]:.6g} s) locks "
-        f"itself: friction in {few(scene.coulomb_joints, 6)} grows by more than what overcomes it, "
-        "so no finite torque keeps it moving; leave that instant out, lessen mu, or drive another "
-        "link"
+        f"{scene.name}: {scene.driver.joint} at {place} (t = {time_s[index]:.6g} s) locks itself: "
+        f"friction in {few(scene.coulomb_joints, 6)} grows by more than the torque against it, so "
+        "no finite torque keeps it moving; leave that instant out, lessen mu, or drive another link"
     )
 
 

@@ -160,8 +160,8 @@ def loosened(scene: Scene, duration_s: float | None = None) -> Scene:
             told = Driver(link, Released(theta, omega, law.duration_s))
             return replace(held, driver=told, start=free.start)
     raise CrankcheckError(
-        f"{scene.name}: it is driven at {scene.driver.joint}, and no link that is pinned to the "
-        "ground can tell its motion when it is let go; drive it at a link"
+        f"{scene.name}: it is driven at {scene.driver.joint}, which is not a link pinned to the "
+        "ground: free motion needs one as its coordinate; drive it at a link"
     )
 
 

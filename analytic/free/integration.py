@@ -147,8 +147,8 @@ class Integration:
         phi, _, _ = self.machine.chart.driver(np.array([self.u]))
         raise failed or CrankcheckError(
             f"{self.scene.name}: its free motion is lost at {self.now_s:.6g} s, with "
-            f"{self.scene.driver.link} at {math.degrees(float(phi[0])):.6g} deg: what acts, or "
-            "what moves, is not smooth there, or has no mass"
+            f"{self.scene.driver.link} at {math.degrees(float(phi[0])):.6g} deg: a load or the "
+            "motion is not smooth there, or has no mass"
         )
 
     def _start(self, long_s: float, way: float) -> tuple[float, float]:

@@ -131,8 +131,8 @@ class LimitPosition:
     def _unclear(self) -> CrankcheckError:
         return CrankcheckError(
             f"{self.scene.name}: {self.scene.driver.link} comes to its limit at "
-            f"{math.degrees(self.driver_rad):.6g} deg, where the dyad of {self.dyad} has no "
-            "smooth way into its other assembly that can be told from others to within "
+            f"{math.degrees(self.driver_rad):.6g} deg, where the smooth way of the dyad of "
+            f"{self.dyad} into its other assembly cannot be distinguished from others within "
             "rounding; another singular position is too near: change a length"
         )
 

@@ -44,9 +44,8 @@ class Machine:
     def __init__(self, scene: Scene, chart: Chart | None = None) -> None:
         if scene.coulomb_joints:
             raise CrankcheckError(
-                f"{scene.name}: friction.{scene.coulomb_joints[0]} follows from what the joint "
-                "bears, which free motion does not know before it is solved; give it a size "
-                "that is constant"
+                f"{scene.name}: friction.{scene.coulomb_joints[0]} follows from the reaction of "
+                "the joint, unknown before free motion is solved; give it a constant size"
             )
         self.scene = scene
         self.chart = chart or Chart(LimitedScene(scene, None), None)

@@ -66,8 +66,8 @@ def _released(same: Same, until_s: float) -> FreeMotion:
     law = scene.driver.law
     if scene.elastic:
         raise CrankcheckError(
-            f"{scene.name}: {', '.join(scene.elastic)} bends or stretches, and would be taken as "
-            "rigid here; let it go by analytic.elastic.released, or take [elastic] out"
+            f"{scene.name}: {', '.join(scene.elastic)} is elastic, and would be taken as rigid "
+            "here; solve it with analytic.elastic.released, or take [elastic] out"
         )
     if not isinstance(law, Released):
         raise CrankcheckError(f'{scene.name}: its driver follows a law; give it law = "free"')
@@ -84,8 +84,8 @@ def _of_all_bodies(scene: Scene, until_s: float, reason: StructureError) -> Bodi
         free = release_multibody(scene, until_s)
     except CrankcheckError as error:
         raise StructureError(
-            f"{reason} As a mechanism of other freedoms, by the equations of motion of all bodies, "
-            f"it is not let go either: {error}"
+            f"{reason} The equations of motion of all bodies do not solve its free motion either: "
+            f"{error}"
         ) from None
     return BodiesMotion(free.dynamics, free.method, free.until_s, free.start)
 
@@ -156,13 +156,14 @@ def check_start(scene: Scene, machine: Machine, u: float) -> None:
     if chart.limit is not None and u < ROOM and law.speed_rad_s:
         raise CrankcheckError(
             f"{scene.name}: {scene.driver.link} starts at its limit, {turned:.6g} deg, with "
-            f"{law.speed_rad_s:g} rad/s, where it has no speed; let it go at rest, or beside it"
+            f"{law.speed_rad_s:g} rad/s, where it has no speed; start it at rest, or beside the "
+            "limit"
         )
     for key, passage in prepared(scene).passages.items():
         phase = np.abs(np.remainder(passage.angles - law.start_rad + 1.0, passage.period) - 1.0)
         if law.speed_rad_s == 0.0 and phase.min() <= 10.0 * AT_START:
             raise CrankcheckError(
-                f"{scene.name}: it is let go at rest in the change point of {key}, at "
+                f"{scene.name}: it starts at rest in the change point of {key}, at "
                 f"{scene.driver.link} {turned:.6g} deg, where it may go on in two ways; give it a "
                 "speed, or another angle"
             )
@@ -189,7 +190,7 @@ def _without_direction(scene: Scene, at: Motion) -> Iterator[str]:
             if math.dist(a, b) <= CLOSE * scene.longest_m:
                 yield (
                     f"springs.{spring.name}: {' and '.join(spring.points)} are at one place at the "
-                    "start, where a pull between them has no direction; let it go from elsewhere"
+                    "start, where a pull between them has no direction; start elsewhere"
                 )
 
 

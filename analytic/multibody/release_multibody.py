@@ -95,13 +95,13 @@ def _check_elastic(scene: Scene, flexible: Mapping[str, Flexible]) -> None:
     CrankcheckError."""
     if missing := [name for name in scene.elastic if name not in flexible]:
         raise CrankcheckError(
-            f"{scene.name}: {few(missing, 6)} bends or stretches, and would be taken as rigid "
-            "here; let it go by analytic.elastic.released, or take [elastic] out"
+            f"{scene.name}: {few(missing, 6)} is elastic, and would be taken as rigid here; solve "
+            "it with analytic.elastic.released, or take [elastic] out"
         )
     if flexible and scene.start.shape == "periodic":
         raise CrankcheckError(
-            f"{scene.name}: what is let go comes back after no period that is known before; give "
-            'shape = "quasi-static" or "straight" in [start]'
+            f'{scene.name}: free motion has no known period; give shape = "quasi-static" or '
+            '"straight" in [start]'
         )
 
 
@@ -122,7 +122,7 @@ def _check_start(dynamics: Dynamics, q: Array, directions: Array) -> None:
     if dynamics.redundant and _freer(dynamics, q, directions):
         raise CrankcheckError(
             f"{assembly.scene.name}: it starts in a change point, where it is free to go on in "
-            "several ways, and its accelerations are not determined; let it go beside it"
+            "several ways, and its accelerations are not determined; start beside it"
         )
 
 

@@ -23,7 +23,7 @@ PROGRESS = re.compile(r"(Build started|Build finished.*|No issues found|\s*)")
 
 
 def build(output: Path, *, examples: bool = True) -> list[str]:
-    """Build the site in the folder ``output``, which is replaced, and return what is wrong with it;
+    """Build the site in the folder ``output``, which is replaced, and return fault with it;
     where something is, the folder stays as it was. Without examples no command is run, and figures
     are stood in for."""
     with tempfile.TemporaryDirectory(prefix="crankcheck-docs-") as folder:

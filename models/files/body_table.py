@@ -189,7 +189,7 @@ def faults_of_links(links: RawTables, names: schema.NamesInTables) -> Iterator[s
     """Yield faults of names that a link cannot have."""
     for name in (GROUND, "world"):
         if name in links:
-            yield f"links.{name}: that name stands for what does not move; name the link otherwise"
+            yield f"links.{name}: that name means the ground; rename the link"
     for name in names.sliders:
         if name in links:
             yield f"sliders.{cut(name)}: a link has that name too; name the slider after its point"

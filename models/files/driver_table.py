@@ -30,7 +30,7 @@ class TurningDriver(schema.Table):
     def _is_one_joint(self) -> TurningDriver:
         if (self.link is None) == (self.pin is None):
             raise ValueError(
-                'name what is driven, one of link = "crank", pin = "B" and slider = "C"'
+                'name the driven joint, one of link = "crank", pin = "B" and slider = "C"'
             )
         if self.links is not None and self.pin is None:
             raise ValueError('links go with a pin: pin = "B", links = ["crank", "coupler"]')
@@ -131,8 +131,8 @@ class FreeDriver(TurningDriver):
     def _is_told_by_a_link(self) -> FreeDriver:
         if self.pin is not None:
             raise ValueError(
-                "nothing drives what is let go: name a link at the ground, by whose angle its "
-                'motion is told, link = "crank"'
+                "free motion has no drive: name a link at the ground whose angle is its "
+                'coordinate, link = "crank"'
             )
         return self
 
@@ -231,7 +231,7 @@ def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
             f"law {type(law).__name__}: a scene file has no words for it; take another"
         )
     if slides and known is Released:
-        raise CrankcheckError("what is let go is told by a link: a scene file has no free slider")
+        raise CrankcheckError("free motion starts at a link: a scene file has no free slider")
     table: dict[str, object] = {} if kind == "constant" else {"law": kind}
     for name, key in _keys_of(known, slides=slides):
         value = getattr(law, name)

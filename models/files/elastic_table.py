@@ -211,8 +211,8 @@ def faults_of_elastic(elastic: schema.RawTables, names: schema.NamesInTables) ->
             continue
         if name == names.driver:
             yield (
-                f"{key}: the driver is a rigid link here: its angle is told, and one that bends "
-                "has none of its own; drive a rigid crank that it is pinned to"
+                f"{key}: the driver has to be a rigid link, as an elastic one has no single angle; "
+                "drive a rigid crank that it is pinned to"
             )
         guided = [
             cut(slider)
@@ -282,8 +282,8 @@ def faults_of_free_motion(scene: Scene) -> Iterator[str]:
     law = scene.driver.law
     if scene.start.shape == "periodic" and isinstance(law, Controlled | Released):
         yield (
-            'start.shape: found "periodic" with a driver whose angle is not told: it comes back '
-            'after no period that is known before; give "quasi-static" or "straight"'
+            'start.shape: found "periodic" with a free driver, which has no known period; give '
+            '"quasi-static" or "straight"'
         )
     if not isinstance(law, Released):
         if replace(scene.start, shape=None):
@@ -298,8 +298,8 @@ def faults_of_free_motion(scene: Scene) -> Iterator[str]:
     links, blocks = scene.links.values(), scene.sliders.values()
     if not any(link.mass_kg > 0.0 for link in links) and not any(b.mass_kg > 0.0 for b in blocks):
         yield (
-            "links: no body has a mass, and nothing says how fast it would move; give mass_kg, or "
-            "leave it out for slender rods"
+            "links: no body has a mass, so its motion is not determined; give mass_kg, or leave it "
+            "out for slender rods"
         )
 
 

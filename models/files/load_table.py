@@ -65,7 +65,7 @@ class LoadTable(schema.Table):
     @model_validator(mode="after")
     def _acts_on_one_body(self) -> LoadTable:
         if (self.link is None) == (self.block is None):
-            raise ValueError("name what it acts on: link, or block (a slider without a link)")
+            raise ValueError("name the loaded body: link, or block (a slider without a link)")
         torque = getattr(self, "torque_n_m", None)
         if (self.force is None) == (torque is None):
             raise ValueError("give force_n or torque_n_m, one of the two")

@@ -173,7 +173,7 @@ class CamTable(schema.Table):
     @model_validator(mode="after")
     def _is_of_one_kind(self) -> CamTable:
         if bool(self.slider) == bool(self.follower):
-            raise ValueError("name what follows: slider = ..., or follower = ... and tip = ...")
+            raise ValueError("name the follower: slider = ..., or follower = ... and tip = ...")
         if bool(self.tip) != bool(self.follower):
             raise ValueError("tip is the point of a follower at its cam: give both, or a slider")
         if self.contact != "flat" and self.face_m:

@@ -32,7 +32,7 @@ class SpringTable(schema.Table):
     @model_validator(mode="after")
     def _is_of_one_kind(self) -> SpringTable:
         if sum(each is not None for each in (self.points, self.pin, self.slider)) != 1:
-            raise ValueError("name where it is: points = [...], pin = ..., or slider = ..., one")
+            raise ValueError("give its place, one of points = [...], pin = ..., slider = ...")
         along = {"rate_n_m": self.rate_n_m, "damping_n_s_m": self.damping_n_s_m}
         turning = {"rate_n_m_rad": self.rate_n_m_rad, "damping_n_m_s": self.damping_n_m_s}
         own, others = (turning, along) if self.pin is not None else (along, turning)

@@ -98,8 +98,8 @@ class JointTable(Table):
             )
         if min(self.radii_m) < 0.0 and not (max(self.radii_m) >= 0.0 and first + second < 0.0):
             raise ValueError(
-                f"radii_m: found {list(self.radii_m)}; below 0 is hollow, and in a hollow there "
-                "lies what is round, with a smaller radius"
+                f"radii_m: found {list(self.radii_m)}; below 0 is hollow, and the profile in a "
+                "hollow is round, with a smaller radius"
             )
         if self.kind == "contact" and math.isinf(first) and math.isinf(second):
             raise ValueError(

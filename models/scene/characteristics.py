@@ -119,7 +119,7 @@ class Polynomial(Characteristic):
 
     def __post_init__(self) -> None:
         if not self.coefficients:
-            raise ValueError("found no coefficient; give one at least, that of x^0 first")
+            raise ValueError("found no coefficient; give at least one, that of x^0 first")
 
     def at(self, x: Array) -> Array:
         return np.asarray(np.polynomial.polynomial.polyval(x, self.coefficients))
@@ -185,7 +185,9 @@ class Staircase(Characteristic):
 
     def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Staircase:
         if stretch < 0.0:
-            raise ValueError("steps have no mirror image: what is on for ever would have been so")
+            raise ValueError(
+                "steps have no mirror image: a load that stays on would have been on before"
+            )
         places = tuple(stretch * place + shift for place in self.places)
         return Staircase(places, tuple(size * value for value in self.values))
 

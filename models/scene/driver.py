@@ -33,8 +33,8 @@ def check_within(scene: Scene, time_s: Array, until_s: float) -> None:
     """Refuse times [s] outside the integrated free motion. Raises CrankcheckError."""
     if time_s.min() < 0.0 or time_s.max() > until_s * (1.0 + 1e-12):
         raise CrankcheckError(
-            f"{scene.name}: times from {time_s.min():g} to {time_s.max():g} s; it was let go at 0, "
-            f"and integrated up to {until_s:g} s"
+            f"{scene.name}: times from {time_s.min():g} to {time_s.max():g} s; its free motion "
+            f"starts at 0, and is integrated up to {until_s:g} s"
         )
 
 
@@ -124,7 +124,7 @@ class Controlled(ConstantSpeed):
         if min(self.kp_n_m_rad, self.kd_n_m_s) < 0.0:
             raise ValueError(
                 f"kp_n_m_rad is {self.kp_n_m_rad:g} and kd_n_m_s {self.kd_n_m_s:g}: a controller "
-                "drives back what is ahead; give gains of 0 or more"
+                "brakes a driver that is ahead; give gains of 0 or more"
             )
 
     def loads(self, link: str, needed: Characteristic) -> Iterator[Load]:

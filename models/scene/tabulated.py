@@ -62,8 +62,8 @@ class Tabulated(Characteristic):
         span = self.places[-1] - self.places[0]
         if span > period * (1.0 + END):
             raise ValueError(
-                f"found rows over {span:g}, more than the period, {period:g}; leave out what is "
-                "there twice, or give the period"
+                f"found rows over {span:g}, more than the period, {period:g}; leave out repeated "
+                "rows, or give the period"
             )
         if span > period * (1.0 - END) and self.values[0] != self.values[-1]:
             raise ValueError(
@@ -151,7 +151,7 @@ class Tabulated(Characteristic):
             beyond = np.where(off, np.maximum(first - x, x - last), 0.0)
             k = int(np.argmax(beyond))
             raise ValueError(
-                f"the table goes from {first:.9g} to {last:.9g}, and {x[k]:.9g} is asked for, "
+                f"the table goes from {first:.9g} to {last:.9g}, and {x[k]:.9g} is requested, "
                 f"{beyond[k]:.3g} beyond; give it rows up to there"
             )
 

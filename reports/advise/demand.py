@@ -120,8 +120,8 @@ def demanded(
         )
     if not (math.isfinite(turns) and turns >= 1.0):
         raise CrankcheckError(
-            f"--turns {turns:g}: give 1 turn of the driver or more; of a part of it nothing is "
-            "said of the rest"
+            f"--turns {turns:g}: give 1 turn of the driver or more; a part of a turn shows nothing "
+            "of the rest"
         )
     moved = tuple(at_speed(scene, speed_rad_s) for scene in scenes)
     demand = Demand(moved, speed_rad_s, frame_s, target, turns)

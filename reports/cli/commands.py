@@ -42,7 +42,8 @@ Draw the diagrams of a sweep as SVG and PDF, for a paper."""),
     "stability": Command("requests.stability:StabilityRequest", COMPARE, """
 Grade engines on hard cases; find how far each holds them.
 
-The exit code is 0; with --at it is 1 where the value is not held."""),
+The exit code is 0; it is 1 with --at where the value is not held, and with --baseline where an
+outcome got worse or a critical value moved by more than its doubt."""),
     "history": Command("requests.history:HistoryRequest", COMPARE, """
 Repeat a verification with several versions of an engine."""),
     "diff": Command("requests.diff:DiffRequest", COMPARE, """
@@ -59,6 +60,11 @@ The exit code is 0 where some settings reach the target, 1 where none do."""),
 Plant faults in runs and check that a rule catches each.
 
 The exit code is 1 where one is not caught."""),
+    "explain": Command("requests.explain:ExplainRequest", COMPARE, """
+Explain a rule, or one cell: its error by part, what helps.
+
+A rule (CC110) or a clause of the contract (EC52): what it holds, why, how its limit comes about.
+A scene with --engine: its error by part, the limit that binds, and settings to turn."""),
     "judge": Command("requests.judge:JudgeRequest", OWN, """
 Compare a log of your own with the closed form.
 

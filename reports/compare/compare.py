@@ -360,7 +360,7 @@ def _elsewhere(run: Run, scene: Scene, state: State) -> list[str]:
 
 
 def _words(name: str, asked: object, found: object) -> str:
-    return f"{name}: asked for {_short(asked)}, the run has {_short(found)}"
+    return f"{name}: requested {_short(asked)}, the run has {_short(found)}"
 
 
 def _short(value: object) -> str:

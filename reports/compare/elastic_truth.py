@@ -268,7 +268,7 @@ class ElasticBeside(Beside):
 
     @cached_property
     def at_crank(self) -> Motion:
-        raise ReachError("where links bend the driver's angle does not say where the others are")
+        raise ReachError("the driver's angle does not determine the others, as links are elastic")
 
 
 def _without(forces: Forces, inner: set[str], links: Mapping[str, str]) -> Forces:

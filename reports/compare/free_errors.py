@@ -118,8 +118,8 @@ def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
 def _notes(beside: FreeBeside, facts: FreeFacts) -> Iterable[str]:
     if facts.left_out:
         yield (
-            f"the truth ends at t = {facts.until_s:.4g} s, where it is no longer known to a "
-            f"quarter of the limit: {facts.left_out} samples after it are not judged"
+            f"the reference ends at t = {facts.until_s:.4g} s, where its uncertainty exceeds a "
+            f"quarter of the limit: {facts.left_out} later samples are not judged"
         )
     if facts.passages:
         yield f"the driver turns back at {facts.passages} limits of its angle on the way"
@@ -134,7 +134,7 @@ def _held(beside: FreeBeside) -> Iterable[str]:
     held = np.flatnonzero(still[1:] & still[:-1])
     if of_strokes and held.size:
         yield (
-            f"from t = {beside.motion.time_s[held[0]]:.4g} s it is held at rest by loads of one "
-            f"stroke ({', '.join(of_strokes)}), as by friction; engines are given them by the sign "
-            "of a speed, creep there, and do so with the first order of the step at best"
+            f"from t = {beside.motion.time_s[held[0]]:.4g} s loads of one stroke "
+            f"({', '.join(of_strokes)}) hold it at rest, as friction does; engines apply them by "
+            "the sign of a speed, creep there, and converge with first order at best"
         )

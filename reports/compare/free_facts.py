@@ -23,12 +23,12 @@ MOST_GROWTH = 1e3
 """Sensitivity of free motion from which on errors of phase cancel and add up at random, and show no
 order."""
 FREE_MOTION = (
-    "Let go: largest errors at the same time over the sensitivity, by how much a small change of "
-    "the start has grown; geometry at the logged angle of the driver; L longest link, w driver's "
-    "peak speed."
+    "Free motion: largest errors at the same time over the sensitivity, by how much a small change "
+    "of the start has grown; geometry at the logged angle of the driver; L longest link, w "
+    "driver's peak speed."
 )
 OVER_G = (
-    "let go, angles, places and rates are over G, by how much a small change of the start has grown"
+    "free motion: angles, places and rates are over G, the growth of a small change of the start"
 )
 
 

@@ -61,8 +61,8 @@ def _truth(
     chain = elastic_truth.cut_scene(scene, count, springs)
     if not isinstance(chain, cut_scenes.SegmentedScene):
         raise EngineError(
-            f"{scene.name}: it is let go, and what engines make of it with beams of their own is "
-            "not held to anything yet; leave --springs beam out"
+            f"{scene.name}: free motion with beams of an engine's own has no reference yet; leave "
+            "--springs beam out"
         )
     rigid = free_truth.free_truth(cut_links.with_rigid_links(scene), steps, dt_s)
     paced = replace(scene, driver=rigid.scene.driver)
@@ -162,7 +162,7 @@ class BentReference:
 
     def beside(self, logged: Motion) -> Motion:
         """Raise ReachError: where links bend, the driver's angle does not fix their positions."""
-        raise ReachError("where links bend the driver's angle does not say where the others are")
+        raise ReachError("the driver's angle does not determine the others, as links are elastic")
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ class ReleasedElasticBeside(elastic_truth.ElasticBeside, FreeBeside):
 
     @property
     def no_geometry(self) -> str:
-        return "no geometry: where links bend the driver's angle does not say where the others are"
+        return "no geometry: the driver's angle does not determine the others, as links are elastic"
 
     @property
     def tells_momentum(self) -> bool:

@@ -112,7 +112,7 @@ def named(name: str, limits: Limits) -> tuple[str, str]:
     if answer.error is not None:
         raise answer.error
     raise EngineError(
-        f"engine {name}: it can not be imported and asked for its version: {answer.reason}; mend "
+        f"engine {name}: importing it and reading its version failed: {answer.reason}; correct "
         "that first"
     )
 

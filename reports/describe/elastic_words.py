@@ -144,9 +144,9 @@ def beam_certainty(motion: elastic_motion.ElasticHistory) -> list[str]:
     if not motion.stiffened:
         short = _shares(own, replace(motion, stiffened=True).at(time_s))
         notes.append(
-            "What the linear theory leaves out, the shortening of bent links, changes deflections "
-            f"by {100.0 * short.deflection:.3g} % of the largest; engines are held to the motion "
-            "with it."
+            "The shortening of bent links, which the linear theory leaves out, changes deflections "
+            f"by {100.0 * short.deflection:.3g} % of the largest; engines are compared with the "
+            "motion with it."
         )
     return notes
 
@@ -164,7 +164,7 @@ def _by_other_shapes(motion: elastic_motion.ElasticHistory, time_s: Array, own: 
         ]
         if own.forces is not None and own.forces.torque.any():
             told.append(f"the torque by {error_text(found.torque)} of its largest")
-        return f"As the next finer description has it, {', '.join(told)}."
+        return f"By the next finer description, {', '.join(told)}."
     found = _shares(replace(motion, by=fewer).at(time_s), own)
     return (
         f"By {described(motion.scene, fewer)} deflections are off this by "

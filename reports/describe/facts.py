@@ -173,7 +173,7 @@ def describe_law(scene: Scene) -> str:
         return f"swings {centre} +- {swing} {where} at {law.frequency_rad_s:g} rad/s"
     if isinstance(law, Released):
         speed = f"at {law.speed_rad_s:g} {unit}/s" if law.speed_rad_s else "at rest"
-        return f"let go {speed} at {place(law.start_rad)} {where}, for {law.duration_s:g} s"
+        return f"released {speed} at {place(law.start_rad)} {where}, for {law.duration_s:g} s"
     return type(law).__name__
 
 

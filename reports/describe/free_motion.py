@@ -295,7 +295,7 @@ def free_notes(motion: FreeMotion, until_s: float) -> list[str]:
     notes = [
         f"Integrated with high precision, no closed form: {angle} is off by at most "
         f"{error_text(off)} rad at {until_s:g} s.",
-        f"Sensitivity {growth:.3g}: what the start is changed by has grown so many times by then.",
+        f"Sensitivity {growth:.3g}: growth of a small change of the start by then.",
     ]
     passed = [one for one in motion.passages if one.time_s <= until_s]
     limits = [
@@ -307,7 +307,7 @@ def free_notes(motion: FreeMotion, until_s: float) -> list[str]:
     edges = [f"{time_s:.6g}" for time_s in motion.edges_s if time_s <= until_s]
     if edges:
         instants = count(len(edges), "instant")
-        notes.append(f"What acts is not smooth at {instants}: {_few(edges)} s.")
+        notes.append(f"Loads are not smooth at {instants}: {_few(edges)} s.")
     return notes
 
 

@@ -124,8 +124,8 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
         notes.append(f"Dead point, {_where(scene, motion, dead)}: {why}.")
     if locked.size:
         notes.append(
-            f"Locked, {_where(scene, motion, locked)}: friction grows there by more than what "
-            "overcomes it; there are no forces, and beside it they may be of any size."
+            f"Locked, {_where(scene, motion, locked)}: friction grows there by more than the "
+            "torque against it; there are no forces, and beside it they may be of any size."
         )
     return notes
 

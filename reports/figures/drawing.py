@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from reports.output.numbers import floor_words
 from reports.results.lines import Line, Named, named
 from reports.results.overview import Report
 
@@ -61,7 +62,7 @@ def fitted(line: Line) -> str:
     if fit.kind == "order":
         return order
     if fit.kind == "floor":
-        return f"floor {fit.floor:.1e}" + (f", {order}" if math.isfinite(fit.order) else "")
+        return floor_words(fit.floor) + (f", {order}" if math.isfinite(fit.order) else "")
     return WORDS.get(fit.kind, fit.kind)
 
 
@@ -93,6 +94,11 @@ COLOURS = (
     ("#7a1f0f", "#c04a1d", "#d97b35", "#dc9f66"),
     ("#0f4023", "#2f7d4c", "#55a572", "#84bf97"),
     ("#3b1a5a", "#71479f", "#9877bd", "#b89fd3"),
+    ("#00494f", "#00828c", "#3fb0b8", "#8fd0d4"),
+    ("#6d0f45", "#b02a77", "#d0609f", "#e0a0c4"),
+    ("#6b4a00", "#a87900", "#d1a52b", "#e0c477"),
+    ("#3a2a20", "#6f5544", "#9a806e", "#bfab9d"),
+    ("#222222", "#5c5c5c", "#8c8c8c", "#b5b5b5"),
 )
 """Hues of the engines, from dark to light."""
 SIZES = {True: (3.0, 3.4, 3.8, 4.2), False: (2.6, 4.0, 5.4, 6.0)}

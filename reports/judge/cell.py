@@ -14,6 +14,7 @@ from models.scene.driver import place_in_words
 from reports.compare.compare import Truth, compare, not_asked_for
 from reports.compare.errors import Departure
 from reports.judge.halving import Followed, followed
+from reports.judge.known import Judged, Names
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import limits
@@ -102,29 +103,28 @@ class Cell:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Checked(Evidence):
+class Checked(Judged):
     """A cell with its results, and its duration [s]; the trajectories are gone."""
 
     cell: Cell
     version: str = ""
     settings: Mapping[str, SettingValue] = field(default_factory=dict)
-    findings: tuple[Finding, ...]
     warnings: tuple[str, ...] = ()
     wall_s: float = 0.0
 
     @property
-    def failures(self) -> tuple[Finding, ...]:
-        return tuple(finding for finding in self.findings if finding.level == "fail")
+    def names(self) -> Names:
+        return self.cell.scene.name, self.cell.engine, self.cell.profile, self.cell.drive
 
     @property
     def advice(self) -> tuple[Finding, ...]:
         return tuple(finding for finding in self.findings if finding.level == "advice")
 
     @property
-    def verdict(self) -> Literal["within", "out", "unsupported"]:
+    def verdict(self) -> Literal["within", "out", "known", "unsupported"]:
         if self.status == "unsupported":
             return "unsupported"
-        return "out" if self.failures else "within"
+        return "known" if self.is_known else "out" if self.failures else "within"
 
 
 def check(cell: Cell) -> Checked:

@@ -115,7 +115,7 @@ def _finer(
         rows = places(beside)
         rows += force_rows(beside).rows if beside else ()
     except CrankcheckError as error:
-        return [], f"{at} there is nothing to compare: {error}"
+        return [], f"{at} nothing to compare: {error}"
     if done.status != "ok":
         return rows, f"{at} {done.status} at t = {done.stopped_at_s:.4g} s: {done.reason}"
     short = incomplete(done)
@@ -176,7 +176,7 @@ def _copied(
         own = [row for row in own if row.quantity in PLACES and row.kind == "total"]
         places = tuple(size for row in own for size in (row.maximum, row.rms, row.final))
         if places and places in seen:
-            texts.append(f"finer run: asked for {at}, the places are those of {seen[places]}")
+            texts.append(f"finer run: requested {at}, the places are those of {seen[places]}")
         seen.setdefault(places, at)
         summed_rad = errors.of_scene.summed_rad
         finer = _at_step(replace(errors, rows=tuple(own)), number, summed_rad)

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from reports.output.numbers import floor_words
 from sim.engine import AT_ROUNDING
 
 Trend = Literal[
@@ -19,7 +20,7 @@ Trend = Literal[
     "grows",
     "at rounding",
     "as solved",
-    "as the truth",
+    "as the reference",
     "diverges",
 ]
 
@@ -57,7 +58,7 @@ class Convergence:
         if self.trend == "grows":
             return "does not shrink: it grows"
         if self.trend in ("does not shrink", "levels off"):
-            return f"{self.trend}: floor {self.floor:.1e}"
+            return f"{self.trend}: {floor_words(self.floor)}"
         return self.trend
 
 
@@ -91,7 +92,7 @@ def convergence(
         trend, order, floor = "as solved", math.nan, math.nan
     stays_or_shrinks = trend in ("shrinks", "levels off", "does not shrink")
     if stays_or_shrinks and max(second, third) <= known:
-        trend, order, floor = "as the truth", math.nan, math.nan
+        trend, order, floor = "as the reference", math.nan, math.nan
     elif trend == "levels off" and floor <= known:
         trend, floor = "shrinks", math.nan
     if cancels and trend == "levels off" and third <= STAYS * second:

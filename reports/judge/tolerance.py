@@ -224,8 +224,8 @@ def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
     asked = [name for name in quantities if name in FORCES]
     if asked:
         raise CrankcheckError(
-            f"{option} {asked[0]}: forces are not judged unless they are asked for; add --forces, "
-            f"or leave {asked[0]} out"
+            f"{option} {asked[0]}: forces are judged with --forces only; add it, or leave "
+            f"{asked[0]} out"
         )
 
 
@@ -236,7 +236,7 @@ def refuse_of_other_kinds(
     names = [name for limits in known for name in limits]
     other = [name for name in quantities if name not in names]
     if other:
-        of = "of free motion; let scenes go with --free, or" if other[0] in FREE else "of a drive;"
+        of = "for free motion; add --free, or" if other[0] in FREE else "of a drive;"
         of = "of elastic links;" if other[0] in BENDING else of
         raise CrankcheckError(
             f"{option} {other[0]}: it is {of} leave {other[0]} out. "

@@ -60,7 +60,7 @@ class Columns:
             what = self.cell(name, row)
             cure = "fill it, cut the log there, or leave the column out ([[channel]] ignore = true)"
             if bad.size >= SPARSE * found.size:
-                cure = f"if it is of another rate or clock than the rest, {ONE_FILE}; else {cure}"
+                cure = f"if it has another rate or clock than the rest, {ONE_FILE}; else {cure}"
             more = f" ({bad.size} such cells)" if bad.size > 1 else ""
             raise CrankcheckError(f"{self.at(name, row)}: {what}{more}; {cure}")
         return found

@@ -20,7 +20,6 @@
 Entries missing for a column are taken from the column's name.
 """
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
@@ -28,6 +27,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from models.errors import CrankcheckError, listed, shown, suggestion
+from models.files.assemble import toml_value
 from models.files.inputs import UnreadableError, regular_text, tables
 from reports.logs.kinds import DIMENSION, KINDS, UNITS
 
@@ -128,7 +128,7 @@ def _check_words(map_: Map, place: str) -> None:
     for one in map_.channel:
         where = f"[[channel]] {one.column!r}"
         if one.column in twice:
-            faults.append(f"{where}: told twice; leave one of them out")
+            faults.append(f"{where}: given twice; leave one of them out")
         twice.add(one.column)
         if one.unit is not None and one.unit not in DIMENSION:
             hint = suggestion(one.unit, DIMENSION, "use one of")
@@ -142,7 +142,7 @@ def _check_words(map_: Map, place: str) -> None:
 
 def form_lines(column: str, reason: str) -> Sequence[str]:
     """Return a form for a column without meaning, for that reason, as remarks."""
-    head = [f"# {' '.join(reason.split())}", "# [[channel]]", f"# column = {toml_text(column)}"]
+    head = [f"# {' '.join(reason.split())}", "# [[channel]]", f"# column = {toml_value(column)}"]
     return [*head, '# of = ""', '# kind = ""', '# unit = ""']
 
 
@@ -158,16 +158,7 @@ def table_lines(head: str, table: MapTable) -> Sequence[str]:
 
 def entries(told: Mapping[str, object]) -> list[str]:
     """Return keys with texts, truths and numbers, as lines of TOML."""
-    lines = []
-    for key, value in told.items():
-        shown = toml_text(value) if isinstance(value, str) else repr(value)
-        lines.append(f"{key} = {shown.lower() if isinstance(value, bool) else shown}")
-    return lines
-
-
-def toml_text(value: str) -> str:
-    """Return a basic string of TOML; JSON has the same escapes."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return [f"{key} = {toml_value(value)}" for key, value in told.items()]
 
 
 def _fault_text(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from models.errors import CrankcheckError, cut, few
+from models.files.assemble import toml_value
 from models.scene import Scene
 from reports.logs import column_meaning, instants, map_file
 from reports.logs.channel import Channel, GapColumn, OwnLog, Reading
@@ -92,7 +93,7 @@ def understood(
     )
 
 
-STILL = "it is of a point of the ground, which does not move"
+STILL = "it belongs to a point of the ground, which does not move"
 
 
 def wanted(scene: Scene, map_: map_file.Map, *, forces: bool = False) -> Callable[[str], bool]:
@@ -160,7 +161,7 @@ def judged_channels(
         if key in first:
             raise CrankcheckError(
                 f"two columns for one quantity, {each.name}: {first[key].column!r} and "
-                f"{each.column!r}; rename one, or say in a map what it is, or ignore = true"
+                f"{each.column!r}; rename one, or say in a map meaning, or ignore = true"
             )
         first[key] = each
         if each.kind.body_kind == "point" and each.of in scene.ground:
@@ -224,7 +225,7 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     angle *= scene.driver.is_crank and not scene.is_free
     lacks = [
         *([] if times else [f"the column of the times, in [time]{angle}"]),
-        *([] if bodies else ["of at least one column what it is of, in a [[channel]]"]),
+        *([] if bodies else ["of at least one column meaning of, in a [[channel]]"]),
     ]
     named = SceneNames(scene)
     points = (name for name in scene.pins if name not in scene.ground)
@@ -232,20 +233,20 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     lines = [
         *map_file.HEAD,
         f"# Still to be filled in: {'; '.join(lacks)}.",
-        f"# The scene has {', '.join(map(map_file.toml_text, dict.fromkeys(every)))}.",
+        f"# The scene has {', '.join(map(toml_value, dict.fromkeys(every)))}.",
         "",
         *(map_file.file_lines(map_.file) or ["# [file]", '# decimal = ","', ""]),
         *map_file.table_lines("[time]", map_.time),
     ]
     if not times:
-        lines += [f"# column = {map_file.toml_text(name)}" for name in columns.raw]
+        lines += [f"# column = {toml_value(name)}" for name in columns.raw]
         lines.append('# unit = "s"')
     for name in others:
         lines.append("")
         if name in told:
             lines += map_file.table_lines("[[channel]]", told[name])
         elif name in bodies:
-            lines.append(f"# {map_file.toml_text(name)} is taken as its name says")
+            lines.append(f"# {toml_value(name)} is taken as its name says")
         else:
             lines += map_file.form_lines(name, _why_no_meaning(name, named))
     return "\n".join(lines) + "\n", "; ".join(lacks)
@@ -268,4 +269,4 @@ def _why_no_meaning(name: str, named: SceneNames) -> str:
         found = meaning(name, named)
     except CrankcheckError as error:
         return str(error)
-    return found if isinstance(found, str) else "it is of a point of the ground"
+    return found if isinstance(found, str) else "it belongs to a point of the ground"

@@ -26,6 +26,15 @@ def error_text(value: float | None, digits: int = 2) -> str:
     return short(value, digits)
 
 
+def floor_words(floor: float, below: float = math.nan, unit: str = "") -> str:
+    """Return a floor of an error that is seen, or, where that is not finite, the size ``below``
+    which there may be one; "" where neither is known."""
+    if math.isfinite(floor):
+        return f"floor {short(floor)} {unit}".rstrip()
+    size = f"{short(below)} {unit}".rstrip()
+    return f"a floor below {size} is not excluded by these steps" * math.isfinite(below)
+
+
 def readable(value: float, digits: int = 3) -> str:
     """Return a number with few digits: 0.0123, 345, 6.7e-5; one that is not finite by its name."""
     if value == 0.0 or 1e-3 <= abs(value) < 1e5:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from reports.causes.cause import Cause
 from reports.compare.compare import Truth, compare
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import left_words
+from reports.judge.known import Judged, Names
 from reports.judge.rows import flat_error
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.limits import LIMITS
@@ -38,7 +40,7 @@ NOT_OF_LOGS = ("CC110", "CC111", "CC115", "CC117")
 
 
 @dataclass(frozen=True, kw_only=True)
-class JudgedLog(Evidence):
+class JudgedLog(Judged):
     """A log with its results. ``beside`` is the comparison, ``fit`` the fitted drive of its
     reference, if any. ``causes`` explain errors out of tolerance, and delays within it;
     ``not_judged`` are parts of the scene that the log lacks; ``notes`` are further facts."""
@@ -48,7 +50,6 @@ class JudgedLog(Evidence):
     drive: LogDrive
     step_s: float
     fit: DriveFit | None = None
-    findings: tuple[Finding, ...] = ()
     causes: tuple[Cause, ...] = ()
     not_judged: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
@@ -63,12 +64,12 @@ class JudgedLog(Evidence):
         return log_limits.log_kind(self.scene).truth_name
 
     @property
-    def failures(self) -> tuple[Finding, ...]:
-        return tuple(finding for finding in self.findings if finding.level == "fail")
+    def names(self) -> Names:
+        return self.scene.name, Path(self.log.source).name, "", self.drive
 
     @property
-    def verdict(self) -> Literal["within", "out"]:
-        return "out" if self.failures else "within"
+    def verdict(self) -> Literal["within", "out", "known"]:
+        return "known" if self.is_known else "out" if self.failures else "within"
 
 
 def judge_log(log: OwnLog, request: log_limits.LogRequest) -> JudgedLog:

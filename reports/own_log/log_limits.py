@@ -150,7 +150,7 @@ def refuse_unjudged(
     faults |= {g.column: "a gap is of a pin or a slider" for g in log.gaps if g.of not in shut}
     if faults:
         place = (
-            f"{log.source}: columns that name a body or a known quantity can not be judged; say "
+            f"{log.source}: columns that name a body or a known quantity can not be judged; give "
             "of, kind and unit in a [[channel]] of the map, which --write-map map.toml begins, or "
             "ignore = true"
         )
@@ -247,7 +247,7 @@ def absent_names(
         if not lacks or (there and not quantity):
             continue
         if body in scene.ground:
-            found.append(f"{few(lacks, 6)} (a point of the ground is not judged else)")
+            found.append(f"{few(lacks, 6)} (a point of the ground is not judged otherwise)")
         elif lacks == [name] or body:
             found.append(few(lacks, 6))
         else:

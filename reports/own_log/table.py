@@ -16,7 +16,7 @@ from reports.judge.rules.rule import share
 from reports.logs.log_beside import aside
 from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, folded, plain, remark, suite_of, table
-from reports.output.numbers import count, error_text, short
+from reports.output.numbers import count, error_text, readable, short
 from reports.own_log.drives import why_aside
 from reports.own_log.judged import JudgedLog, LogRow, column_text, log_rows
 from reports.own_log.log_limits import log_kind
@@ -34,6 +34,8 @@ def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
     _causes(console, judged)
     console.print(_table(shown_rows(judged), console.width), "")
     _rest(console, judged)
+    if judged.known_text:
+        hanging(console, "known failures: ", judged.known_text, style="yellow")
     console.print(verdict_line(judged))
     console.print(escape("\n".join(footer(judged, facts))), style="dim", highlight=False)
 
@@ -122,15 +124,13 @@ def rest_text(judged: JudgedLog) -> str:
     count_ = count(len(left), "more error")
     return (
         f"{count_} within, of rates at the start, or differenced: {worst.what}, takes most, "
-        f"{taken_text(worst.taken)}"
+        f"{taken_text(worst.taken)} of its limit"
     )
 
 
 def taken_text(taken: float) -> str:
-    """Return a part of a limit: 12%, x34."""
-    if not math.isfinite(taken):
-        return "nan"
-    return f"{taken:.0%}" if taken < 10 else f"x{short(taken)}" if taken >= 1e4 else f"x{taken:.0f}"
+    """Return an error over its limit: 0.12, 34."""
+    return readable(taken, 2) if math.isfinite(taken) else "nan"
 
 
 def _rest(console: Console, judged: JudgedLog) -> None:
@@ -198,6 +198,8 @@ def verdict_line(judged: JudgedLog) -> Text:
         what += f"; not judged: {few(names, 6)}"
     if judged.failures:
         out = sum(row.verdict == "out" for row in rows)
+        if judged.is_known:
+            return Text(f"KNOWN FAILURE: {out} of {what}", "bold yellow")
         return Text(f"OUT OF TOLERANCE: {out} of {what}", "bold red")
     return Text(f"WITHIN TOLERANCE: {what}", "bold green")
 
@@ -245,7 +247,7 @@ def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
 
 
 COMMENT_ROOM = 20_000
-HEADS = ("", "columns", "read as", "largest\nerror:", "of its\nscale:", "limit:", "taken:")
+HEADS = ("", "columns", "read as", "largest\nerror:", "of its\nscale:", "limit:", "error /\nlimit:")
 
 
 def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:

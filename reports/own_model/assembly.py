@@ -125,8 +125,8 @@ def _started(scene: Scene, request: ModelRequest) -> Scene:
     found = in_assembly(elsewhere, motion)
     if found is None:
         raise CrankcheckError(
-            f"{request.path}: --start {request.start_deg:g}: the assembly of the pose is not told "
-            "there from others; start nearer to the pose"
+            f"{request.path}: --start {request.start_deg:g}: the assembly of the pose is not "
+            "unique there; start nearer to the pose"
         )
     return found
 

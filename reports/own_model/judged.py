@@ -162,16 +162,14 @@ def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
     if error < HELPS * best:
         return one
     less = f"{short(error / best)} times less error" if best > 0.0 and error > 0.0 else "it runs"
-    now = "within tolerance" if last.verdict == "within" else "out of tolerance still"
+    now = "within tolerance" if last.verdict == "within" else "still out of tolerance"
     changed = replace(one, remedy=f"The recommended settings: {less}, {now}.")
     return replace(changed, findings=judge(changed))
 
 
 def _part(finding: Finding) -> float:
     """Return a finding as a part of its limit; infinite without numbers: how the run ended."""
-    if finding.number is None or not finding.limit:
-        return math.inf
-    return finding.number / finding.limit if math.isfinite(finding.number) else math.inf
+    return math.inf if math.isnan(finding.taken) else finding.taken
 
 
 Run = Callable[[ModelLine], CheckedLine]

@@ -16,7 +16,7 @@ from reports.judge.rows import cell_row, error_row
 from reports.judge.rules import RULES, titled
 from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import json_text
-from reports.output.numbers import count, error_text, listed, short
+from reports.output.numbers import count, error_text, listed, readable, short
 from reports.own_model.account import CheckedLine, ModelAccount, told
 from reports.own_model.judged import PARTS, JudgedModel, errors_of
 from reports.verify.table import HALVED, MARKS, halved, mark
@@ -119,7 +119,7 @@ def effect(judged: JudgedModel, kind: str) -> str:
 def factor_words(factor: float) -> str:
     """Return an error as written over another one, in words."""
     if math.isnan(factor):
-        return "not to be told"
+        return "unknown"
     if 0.99 < factor < 1.01:
         return "the same error"
     if factor > 1.0:
@@ -167,10 +167,8 @@ def still_out(judged: JudgedModel) -> str:
 
 
 def share_text(share: float) -> str:
-    """Return a part of a limit: 12.3% of its limit, 34 times its limit."""
-    if share >= 1.0:
-        return f"{factor_text(share)} times its limit"
-    return f"{share:.1%} of its limit" if share >= 1e-3 else "below 0.1% of its limit"
+    """Return an error over its limit: 0.12 of its limit, 34 of its limit."""
+    return f"{readable(share, 2)} of its limit"
 
 
 def verdict_text(judged: JudgedModel) -> str:
@@ -178,6 +176,8 @@ def verdict_text(judged: JudgedModel) -> str:
     own, last = judged.own, judged.lines[-1]
     if own.verdict == "within":
         head = "WITHIN TOLERANCE as written"
+    elif own.verdict == "known":
+        head = f"KNOWN FAILURE as written{_why_out(judged)}"
     elif own.verdict == "unsupported":
         head = f"NOT RUN as written: {own.reason}"
     else:
@@ -249,7 +249,7 @@ def is_diff(patch: str) -> bool:
 WIDE, NARROW = 76, 52
 """Columns of a terminal that show the gap and the body of the largest error; and those below which
 the convergence by halving is left out, if all lines ran."""
-STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
+STYLES = {name: "bold green" if name == "within" else "bold red" for name in MARKS}
 
 
 def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> None:
@@ -265,6 +265,8 @@ def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> Non
     if text := gaps(judged):
         hanging(console, "joints: ", harmless(text))
     _disturbing(console, judged)
+    if text := judged.own.known_text:
+        hanging(console, "as written: ", text, style="yellow")
     console.print(Text(recommended_head(judged), "bold"))
     console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)
     console.print(Text(harmless(verdict_text(judged)), STYLES[judged.verdict]))

@@ -60,7 +60,7 @@ def summary(stored: Stored, matrix: Matrix | None = None) -> str:
         _recommended(report),
         *_snippets(report),
         *_times(report),
-        "### What the error does as the step shrinks",
+        "### Error as the step shrinks",
         _fits(report),
         *_failures(report),
         _footer(report),
@@ -70,7 +70,7 @@ def summary(stored: Stored, matrix: Matrix | None = None) -> str:
 
 def _ended(report: Report) -> str:
     number, bad = len(report.cells), int((report.cells["status"] != "ok").sum())
-    rest = f"{bad} did not end well" if bad else "none failed to end well"
+    rest = f"{bad} failed" if bad else "no run failed"
     return f"Of all {count(number, 'cell')}, whatever the settings, {rest}."
 
 
@@ -108,8 +108,8 @@ def _recommended(report: Report) -> str:
     rows = [_recommendation(one) for one in report.recommendations]
     scenes = count(len(report.scenes), "scene")
     words = (
-        f"The cheapest that keep the error of place [rad, or of the longest link] on {scenes} "
-        "within a target; times are geometric means."
+        "The cheapest settings that keep the error of position [rad, or over the longest link] on "
+        f"{scenes} within a target; times are geometric means."
         + " Where links bend, it is that of the deflection, over the largest."
         * bool(report.of_kind("elastic"))
     )
@@ -232,7 +232,7 @@ def _failures(report: Report) -> Iterator[str]:
     if rows:
         heads = ("scene", "variant", "ended", "at steps per turn", "first reason")
         body = table(heads, rows, ROOM["failures"])
-        yield "### What did not end well"
+        yield "### Failed runs"
         yield folded(f"{count(number, 'run')} of {count(len(report.cells), 'cell')}", body)
 
 

@@ -83,7 +83,7 @@ class Placing:
             right = np.zeros(len(self.truth.time_s))
             self.off[name] = np.column_stack([own.get(axis, right) for axis in (0, 1)])
             only = "xy"[next(iter(own))]
-            told = "x and y" if len(own) == 2 else f"{only}; the other is that of the truth"
+            told = "x and y" if len(own) == 2 else f"{only}; the other is the reference's"
             self.origins[name] = told
             self.marks.append(name)
 
@@ -155,7 +155,7 @@ class Placing:
             return False
         about = next(iter(link.points))
         self.ends[link.name] = self._ends(link, about, self.turned[link.name])
-        self.origins[link.name] = f"its angle, about {about} of the truth"
+        self.origins[link.name] = f"its angle, about {about} of the reference"
         return True
 
     def _direction_off(self, first: str, second: str) -> Array:

@@ -210,7 +210,7 @@ def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
     largest = f"{readable(abs(curve.largest), 4)} {curve.unit}"
     yield f"Its largest error is {largest}{f', at t = {curve.worst_s:.6g} s' * judged.log.timed}."
     if not curve.judged:
-        why = f"with --drive {judged.drive}" if judged.log.timed else "where it leads the truth"
+        why = f"with --drive {judged.drive}" if judged.log.timed else "where it leads the reference"
         yield f"It is not judged {why}."
     for row in curve.judged:
         error = row.error
@@ -224,7 +224,7 @@ def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
         turns = count(abs(curve.turns), "turn")
         yield f"Whole turns do not count: the {judged.truth_name} is drawn {turns} {way}."
     if curve.reading is not None and curve.reading.channel.relative_to:
-        yield "The truth is that of both links."
+        yield "The reference is that of both links."
     if curve.whole.is_thinned:
         yield (
             f"Of {curve.total} rows {curve.whole.error.size} are drawn: the smallest and the "

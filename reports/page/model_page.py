@@ -233,7 +233,7 @@ def _disturbing(judged: JudgedModel) -> Section | None:
         return None
     return Section(
         anchor="disturbing",
-        title="What can disturb it",
+        title="Possible disturbances",
         template="model_disturbing.html",
         words={
             "groups": [

@@ -136,12 +136,12 @@ def _effort(scene: Scene, turn: Motion) -> dict[str, object] | None:
 
 
 FORCE_CAPTIONS: Mapping[str, str] = {
-    "torque": "What drives, and its mean over the turn.",
-    "reactions": "How large the reactions are; normal forces of guides with their sign.",
+    "torque": "Driving torque or force, and its mean over the turn.",
+    "reactions": "Size of the reactions; normal forces of guides with their sign.",
     "reactions-polar": "The tip of each reaction over a turn, drawn from the cross.",
-    "efficiency": "What of the drive's power goes on to loads and masses.",
-    "reduced": "The machine as one mass that moves with the driver.",
-    "forces": "The mechanism where its reactions are largest.",
+    "efficiency": "Power of the drive that goes on to loads and masses.",
+    "reduced": "The machine reduced to one mass at the driver.",
+    "forces": "The mechanism at its largest reactions.",
 }
 
 
@@ -177,7 +177,7 @@ def _force_section(
 
 FREE_CAPTIONS: Mapping[str, str] = {
     "over-time": "The driver's angle and angular velocity.",
-    "energy": "What the motion keeps of its energy, and what is done on it.",
+    "energy": "Energy of the motion, and work done on it.",
     "phase": "The driver's angular velocity over its angle.",
 }
 SHORTEST_MS, LONGEST_MS = 4000, 12000
@@ -203,9 +203,9 @@ def _free(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
 
 
 ELASTIC_CAPTIONS: Mapping[str, str] = {
-    "deflection": "How far the middle of each elastic link is from the line between its pins.",
-    "angles": "What links do with elastic links and with rigid ones, and what is between them.",
-    "extension": "By how much the pins of each elastic link are further apart than at rest.",
+    "deflection": "Distance of the middle of each elastic link from the line between its pins.",
+    "angles": "Motion of the links with elastic and with rigid links, and the difference.",
+    "extension": "Extension between the pins of each elastic link.",
     "torque": "The driving torque with elastic links and with rigid ones.",
     "positions": "The mechanism at six instants, magnified as it says.",
 }

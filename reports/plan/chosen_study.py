@@ -83,7 +83,7 @@ def _driven(study: Study, choice: StudyChoice) -> dict[str, object]:
     """Return the fields for driven scenes. Raises CrankcheckError for options of free motion."""
     for option, value in (("--dt", choice.dt_s), ("--duration", choice.duration_s)):
         if value:
-            raise CrankcheckError(f"{option}: it is of scenes that are let go; add --free")
+            raise CrankcheckError(f"{option}: this option is for free motion; add --free")
     return {
         "scenes": list(choice.scenes) or study.scenes,
         "steps_per_turn": list(choice.steps_per_turn) or study.steps_per_turn,
@@ -98,7 +98,7 @@ def _free_lines(study: Study, choice: StudyChoice) -> dict[str, object]:
     if choice.steps_per_turn or choice.turns is not None:
         option = "--steps-per-turn" if choice.steps_per_turn else "--turns"
         raise CrankcheckError(
-            f"{option}: what is let go has no turns; give --dt and --duration, in seconds"
+            f"{option}: free motion has no turns; give --dt and --duration, in seconds"
         )
     held = study.times_held or ([] if study.dt_s else list(TIMES_HELD))
     return {

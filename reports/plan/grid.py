@@ -128,9 +128,9 @@ def refuse_endless(study: Study) -> None:
         largest = lists[numbers.index(max(numbers))]
         several = few((f"{number} of {name}" for name, number in largest.items()), 6)
         raise CrankcheckError(
-            f"the study asks for {cells:.6g} cells: {told(scenes, 'scene')} x "
-            f"{sum(numbers):.6g} variants"
-            + f" (one has {several}, each with each)"
+            f"the study has {cells:.6g} cells: {told(scenes, 'scene')} x {sum(numbers):.6g} "
+            "variants"
+            + f" (one has {several}, in all combinations)"
             * bool(several)
             + f" x {steps} steps{UNITS[study.lists[0]]}; a sweep has at most "
             f"{MOST_CELLS}: take fewer of them"

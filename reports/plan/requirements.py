@@ -70,14 +70,13 @@ def left_out_note(names: str | Sequence[str]) -> str:
     notes = []
     if alone:
         notes.append(
-            f"{' and '.join(alone)}: left out, as engines are given no friction that grows with "
-            "what a joint bears; `crankcheck solve` shows it"
+            f"{' and '.join(alone)}: left out, as no engine here has friction that grows with the "
+            "reaction of a joint; `crankcheck solve` shows it"
         )
     if loose:
         notes.append(
-            f"{' and '.join(loose)}: left out, as the truth of elastic links that are let go, or "
-            "driven by a controller, takes longer than all others; they are run where they are "
-            "named"
+            f"{' and '.join(loose)}: left out, as the reference of elastic links in free motion, "
+            "or with a controller, takes longer than all others; name them to run them"
         )
     return "\n".join(notes)
 
@@ -96,8 +95,8 @@ def refuse_unfollowed(scene: Scene) -> None:
     check_names(scene)
     if scene.is_free:
         raise CrankcheckError(
-            f"{scene.name}: its driver is let go, and follows no law; `crankcheck verify` runs it, "
-            "and `crankcheck sweep --free`"
+            f"{scene.name}: a scene of free motion, whose driver follows no law; `crankcheck "
+            "verify` runs it, and `crankcheck sweep --free`"
         )
     turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
     solve(scene, turn, points=(), sliders=(), bound=False)
@@ -162,7 +161,7 @@ def scenes_of(names: Sequence[str], *, free: bool) -> list[Scene]:
     if not free:
         scenes = chosen_scenes(names)
         for scene in scenes:
-            refuse_giving_way(scene, "`crankcheck sweep --free` lets it go so, as `verify` does")
+            refuse_giving_way(scene, "`crankcheck sweep --free` runs it so, as `verify` does")
         return scenes
     scenes = chosen_scenes(free_names(names), check_names)
     return [loosened(under_control(scene)) for scene in scenes]
@@ -189,8 +188,8 @@ def refuse_giving_way(scene: Scene, instead: str) -> None:
     names an alternative. Raises CrankcheckError."""
     if gives_way(scene):
         raise CrankcheckError(
-            f"{scene.name}: {', '.join(scene.elastic)} bends, and engines are given it let go, "
-            f"with the torque of its controller: it has no turns; {instead}"
+            f"{scene.name}: {', '.join(scene.elastic)} is elastic, and engines run it in free "
+            f"motion, with the torque of its controller: it has no turns; {instead}"
         )
 
 
@@ -203,8 +202,8 @@ def refuse_unreleased(scene: Scene, duration_s: float) -> None:
     check_names(scene)
     if scene.coulomb_joints:
         raise CrankcheckError(
-            f"{scene.name}: friction that grows with what a joint bears "
-            f"({', '.join(scene.coulomb_joints)}) is not taken into free motion; take it out"
+            f"{scene.name}: friction that grows with the reaction of a joint "
+            f"({', '.join(scene.coulomb_joints)}) is not part of free motion; remove it"
         )
     for load in scene.loads.values():
         if load.over == "time":
@@ -246,8 +245,7 @@ def chosen_segments(count: int | None, option: str = "--segments") -> int:
         return SEGMENTS
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_SEGMENTS:
         raise CrankcheckError(
-            f"{option}: found {shown(count)}; a link bends with 2 segments or more, and up to "
-            f"{MOST_SEGMENTS} are run"
+            f"{option}: found {shown(count)}; an elastic link has 2 to {MOST_SEGMENTS} segments"
         )
     return count
 
@@ -285,7 +283,7 @@ def by_contact(scenes: Iterable[Scene], counts: Sequence[int]) -> list[Scene]:
         some = f"{LEAST_FACETS} to {MOST_FACETS}"
         raise CrankcheckError(f"--facets: found {wrong[0]}; a cam by contact has {some}")
     if counts and not any(scene.cams for scene in every):
-        raise CrankcheckError("--facets: it is of cams, and no scene has one; leave --facets out")
+        raise CrankcheckError("--facets: no scene has a cam; leave --facets out")
     made = []
     for scene in every:
         for count in dict.fromkeys(counts if scene.cams else ()):
@@ -303,9 +301,9 @@ def rigid_alone(what: str) -> Callable[[Scene], None]:
         if scene.elastic:
             free = "--free " * (scene.is_free or gives_way(scene))
             raise CrankcheckError(
-                f"{scene.name}: {', '.join(scene.elastic)} bends, and `crankcheck {what}` takes "
-                f"rigid links; `crankcheck sweep {scene.name} {free}--segments 4,8,16 -o DIR` "
-                "finds the cheapest settings of elastic ones, and `verify` judges them"
+                f"{scene.name}: {', '.join(scene.elastic)} is elastic, and `crankcheck {what}` "
+                f"takes rigid links; `crankcheck sweep {scene.name} {free}--segments 4,8,16 -o "
+                "DIR` finds the cheapest settings of elastic ones, and `verify` judges them"
             )
         refuse_unfollowed(scene)
 
@@ -330,9 +328,7 @@ def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> Non
         return
     for option, given in (("--segments", count), ("--springs", springs)):
         if given is not None:
-            raise CrankcheckError(
-                f"{option}: it is of elastic links, and no scene has one; leave {option} out"
-            )
+            raise CrankcheckError(f"{option}: no scene has elastic links; leave {option} out")
 
 
 def refuse_unelastic(
@@ -408,6 +404,6 @@ def shortened_note(scene: Scene, lasts_s: float) -> str:
     if few_swings_s(scene) >= whole_s or not math.isclose(lasts_s, few_swings_s(scene)):
         return ""
     return (
-        f"{scene.name}: let go for {lasts_s:.3g} s of its {whole_s:.4g} s, {SWINGS} swings of its "
-        "slowest elastic link; --duration takes more, whose truth takes as much longer"
+        f"{scene.name}: free motion for {lasts_s:.3g} s of its {whole_s:.4g} s, {SWINGS} swings of "
+        "its slowest elastic link; --duration gives more, and the reference takes as much longer"
     )

@@ -61,7 +61,7 @@ def refuse_singular(scene: Scene, duration_s: float) -> None:
             at = place_in_words(float(place), scene.driver.unit)
             raise CrankcheckError(
                 f"{scene.name}: at driver {at} the dyad of {key} is singular: the motion is not "
-                "determined there, and no engine can be held to it; choose lengths, or a "
+                "determined there, so no engine can be compared with it; choose lengths, or a "
                 "range of the driver, away from it"
             )
 
@@ -169,4 +169,4 @@ def silent_note(engines: Iterable[str]) -> str:
         return ""
     reasons = ((name, engine(name).no_forces) for name in silent)
     named = " and ".join(f"{name} ({why})" if why else name for name, why in reasons)
-    return f"forces: {named} reports none, and is run without"
+    return f"forces: {named} reports none, and runs without"

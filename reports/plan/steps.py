@@ -78,9 +78,9 @@ def counted(
         )
     if steps <= least - 1:
         raise CrankcheckError(
-            f"{option} --turns {turns:g}: {math.ceil(steps)} steps of {scene.name}; an "
-            f"engine takes up its pins in the first {SETTLING}, so a run has at least "
-            f"{least}: take {least / per_turn:.3g} turns or more, or a shorter step"
+            f"{option} --turns {turns:g}: {math.ceil(steps)} steps of {scene.name}; an engine "
+            f"settles its pins in the first {SETTLING}, so a run has at least {least}: take "
+            f"{least / per_turn:.3g} turns or more, or a shorter step"
         )
     _refuse_unlogged(scene, every, steps, "more turns")
     return dt_s or period / per_turn, math.ceil(steps)
@@ -123,8 +123,8 @@ def _refuse_unlogged(scene: Scene, every: int, steps: float, longer: str) -> Non
     """Refuse a run that logs no step but its start. Raises CrankcheckError."""
     if every > math.ceil(steps):
         raise CrankcheckError(
-            f"--every {every}: the run of {scene.name} has {math.ceil(steps)} steps, so that none "
-            f"is logged but the start; log more of them, or take {longer}"
+            f"--every {every}: the run of {scene.name} has {math.ceil(steps)} steps, so only the "
+            f"start would be logged; log more of them, or take {longer}"
         )
 
 

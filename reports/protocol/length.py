@@ -110,7 +110,7 @@ class Seconds(Clock):
         return f" for {turns:g} s"
 
     def words(self, dt_s: float, steps_per_turn: float, turns: float) -> tuple[str, str]:
-        return f"dt {dt_s:.4g} s", f"let go for {turns:.4g} s"
+        return f"dt {dt_s:.4g} s", f"free for {turns:.4g} s"
 
     def period_s(self, driver_s: float) -> float:
         return 1.0

@@ -26,10 +26,9 @@ OPEN_SHARE = 3e-4
 """Three times the part of a force that MuJoCo's stiffest documented impedance (0.9999) leaves; over
 the largest of them no ratio of masses makes it more (0.001 to 1000 times the mass of any link)."""
 TAKEN_UP = Tolerance(
-    "Second order: forces go with accelerations, at places that are off by what a step leaves "
-    "out, and a dyad passes them on enlarged by 1/sine of its transmission angle. Besides the "
-    "share of a force that soft constraints leave open, and of what a load is off by where its "
-    "slider is off.",
+    "Second order: forces follow accelerations, at places with the error of a step, and a dyad "
+    "enlarges them by 1/sine of its transmission angle. Further parts: the share of a force that "
+    "soft constraints leave open, and the error of a load at a slider that is off.",
     cap=0.2,  # a fifth of the largest force; twice the worst at 90 steps a turn
     coefficient=12.0,
     power=1.0,
@@ -42,8 +41,8 @@ TAKEN_UP = Tolerance(
 )
 
 FREE_FORCE = Tolerance(
-    "As the phase, which the mechanism passes on to its accelerations as their rates say, and the "
-    "share of a force that soft constraints leave open.",
+    "As the phase, times the rates of the accelerations, and the share of a force that soft "
+    "constraints leave open.",
     cap=0.2,
     coefficient=6.0,
     power=2.0,
@@ -191,7 +190,7 @@ REACTION = _force(
         "CC120",
         "reaction",
         "The force in every pin, as a vector in the ground's frame, against kinetostatics at the "
-        "instant that it acts at; where more than two bodies meet, that on each of them.",
+        "instant of the force; at a pin of more than two bodies, that on each of them.",
         CURE,
         "react.",
         TAKEN_UP,
@@ -243,11 +242,11 @@ TORQUE = _force(
         "CC123",
         "torque",
         "The torque that the drive exerts on the driver, against kinetostatics.",
-        f"{CURE} What turns a flywheel in the model is no part of it.",
+        f"{CURE} The torque on a flywheel of the model is no part of it.",
         "torque",
         replace(
             TAKEN_UP,
-            reason="As of reactions, of which it takes what their arms make of them.",
+            reason="As of reactions, times their arms.",
             slope="torque",
         ),
         diagram="driving torque",

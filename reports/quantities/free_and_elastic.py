@@ -49,16 +49,16 @@ PHASE = Quantity(
         Criterion(
             "CC127",
             "phase",
-            "Let go, a mechanism that is a little too fast or too slow is ever further from where "
-            "it should be. The driver's angle is held to the integrated one at the same time, over "
-            "the sensitivity of the motion: what a small change of its start has grown by.",
-            "Shorten the step (--dt), or take an integrator of higher order, and look at what "
-            "damps the joints.",
+            "In free motion a mechanism that is a little too fast or too slow drifts ever further "
+            "off. The driver's angle is compared with the integrated one at the same time, over "
+            "the sensitivity of the motion: the growth of a small change of its start.",
+            "Shorten the step (--dt), or take an integrator of higher order, and look for damping "
+            "in the joints.",
             short="phase",
             diagram="phase: the driver's angle over the sensitivity",
             tolerance=Tolerance(
-                "Second order, for the longest while: a loss of energy makes an error of phase "
-                "that grows with the square of time, and the sensitivity with time alone.",
+                "Second order, for most of the time: a loss of energy makes an error of phase that "
+                "grows with the square of time, and the sensitivity with time alone.",
                 cap=0.1,  # IFToMM's class of low precision, whatever the step
                 coefficient=6.0,
                 power=1.0,
@@ -82,15 +82,14 @@ GEOMETRY = Quantity(
         Criterion(
             "CC128",
             "geometry",
-            "All places at the angle that the run's own coordinate has: a linkage that has come "
-            "open is told from one whose phase has run away.",
+            "All places at the run's own angle: this separates an open linkage from an error of "
+            "phase.",
             "Stiffen the loop (settings of the engine), or shorten the step.",
             short="geom",
             diagram="geometry at the run's own angle",
             tolerance=Tolerance(
-                "A step moves the pins along tangents, which leaves an arc of step^2/2 times the "
-                "curvature to be closed; a dyad passes it on enlarged by 1/sine of its "
-                "transmission angle.",
+                "A step moves the pins along tangents, which leaves a gap of step^2/2 times the "
+                "curvature to close; a dyad enlarges it by 1/sine of its transmission angle.",
                 cap=2e-2,
                 coefficient=0.8,
                 power=1.0,
@@ -128,16 +127,17 @@ ENERGY = Quantity(
         Criterion(
             "CC129",
             "energy drift",
-            "What the energy of the engine has drifted by, less the work of loads and dampers: the "
-            "mean over the last while less that over the first, as a share of the largest kinetic "
-            "energy. An offset that comes and goes with the motion is none.",
-            "Shorten the step (--dt); look for what damps or drives the bodies unasked.",
+            "Drift of the engine's energy, less the work of loads and dampers: the mean over the "
+            "last window less that over the first, as a share of the largest kinetic energy. An "
+            "offset that comes and goes with the motion is no drift.",
+            "Shorten the step (--dt); look for damping or driving of the bodies that the scene has "
+            "not.",
             short="drift",
             diagram="drift of energy",
             tolerance=Tolerance(
-                "Joints that are closed by impulses, or by springs with dampers, are late by the "
-                "arc of a step: by its work the energy is off, of second order, and loses a part "
-                "at every step, of third.",
+                "Joints closed by impulses, or by springs with dampers, are late by the gap of a "
+                "step: its work changes the energy, of second order, and a part is lost at every "
+                "step, of third.",
                 cap=0.1,
                 arc=4.0,
                 late=0.5,
@@ -155,11 +155,11 @@ MOMENTUM = Quantity(
             "momentum drift",
             "Without weight and loads, a mechanism that is pinned to the ground at one point keeps "
             "its angular momentum about that point.",
-            "Look for damping in the pin, or for what acts from outside unasked.",
+            "Look for damping in the pin, or for outside loads that the scene has not.",
             short="mom",
             tolerance=Tolerance(
-                "Pins exert no moment about themselves, at any step: what is left is rounding, and "
-                "the arc of a step.",
+                "Pins exert no moment about themselves, at any step: rounding, and the gap of a "
+                "step, remain.",
                 cap=0.1,
                 coefficient=10.0,
             ),
@@ -200,11 +200,11 @@ def _middle(column: str) -> Measure:
 
 
 BENT = Tolerance(
-    "What joints are off by, step^2 of the longest link at the curvature, over the deflection (of "
-    "a beam of an engine's own, which has none, step^2 of itself); "
-    "what a spring's swing of r times the driver's speed is off by, (r step)^2/24 of its phase in "
-    "every swing; and, of what is held to the beam, what the exact chain of as many segments is "
-    "off it by, and what the beam itself is.",
+    "Sum of: the error of joints, step^2 of the longest link at the curvature, over the deflection "
+    "(for a beam of an engine's own, without joints, step^2 of itself); the error of a spring's "
+    "swing of r times the driver's speed, (r step)^2/24 of its phase in every swing; and, compared "
+    "with the beam, the error of the exact chain of as many segments and the uncertainty of the "
+    "beam.",
     cap=0.2,  # a fifth of the largest deflection: another stiffness, however coarse the chain
     coefficient=0.5,
     power=1.0,
@@ -213,7 +213,7 @@ BENT = Tolerance(
 )
 CURE = (
     "Shorten the step (--steps-per-turn); look at the rates of the springs between segments, and "
-    "at what else bends or damps."
+    "for other bending or damping."
 )
 
 
@@ -228,7 +228,7 @@ DEFLECTION = _elastic(
     Criterion(
         "CC131",
         "deflection",
-        "How far the middle of each elastic link is from the line between its pins, against "
+        "The distance of the middle of each elastic link from the line between its pins, against "
         "the beam with foreshortening, at the commanded time.",
         f"{CURE} More segments (--segments) come nearer to the beam, as 1/n^2.",
         short="bend",
@@ -243,8 +243,8 @@ SEGMENTS = _elastic(
     Criterion(
         "CC132",
         "deflection of segments",
-        "The same against the exact chain of as many segments, a multibody without an engine: "
-        "what the engine itself is off by.",
+        "The same against the exact chain of as many segments, a multibody without an engine: the "
+        "error of the engine itself.",
         CURE,
         short="chain",
         diagram="deflection of segments",
@@ -264,8 +264,8 @@ EXTENSION = _elastic(
     Criterion(
         "CC133",
         "extension",
-        "By how much the pins of each elastic link are further apart, or nearer, than at rest: "
-        "a bent link is shorter.",
+        "The change of distance between the pins of each elastic link since rest: a bent link is "
+        "shorter.",
         CURE,
         short="ext",
         tolerance=Tolerance(

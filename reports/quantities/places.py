@@ -13,9 +13,9 @@ from reports.quantities import quantity
 
 EPSILON = float(np.finfo(np.float64).eps)
 WITHIN_A_STEP = quantity.Tolerance(
-    "A step moves the pins along tangents, which leaves an arc of step^2/2 times the curvature "
-    "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle. To close it "
-    "an engine sets its bodies off by the jolt times step^2; twice that where it is more.",
+    "A step moves the pins along tangents, which leaves a gap of step^2/2 times the curvature to "
+    "close; a dyad enlarges it by 1/sine of its transmission angle. To close it an engine moves "
+    "its bodies by the jolt times step^2; twice that if it is more.",
     cap=2e-2,  # about a degree; ten times the worst at 180 steps a turn
     coefficient=1.0,
     power=1.0,
@@ -25,8 +25,7 @@ WITHIN_A_STEP = quantity.Tolerance(
 
 
 FREE_PLACE = quantity.Tolerance(
-    "As the phase, which the mechanism passes on to its places as their rates say, and the arc of "
-    "a step.",
+    "As the phase, times the rates of the places, and the gap of a step.",
     cap=0.1,
     coefficient=9.0,
     power=1.0,
@@ -75,8 +74,8 @@ DRIVE = quantity.Quantity(
             short="drive",
             diagram="drive: the crank's angle",
             tolerance=quantity.Tolerance(
-                "Prescribed means prescribed: what rounding makes of an angle that is added up "
-                "step by step, and room for a flywheel that the mechanism slows by a part in 1e12.",
+                "A prescribed drive leaves the rounding of an angle summed step by step, and room "
+                "for a flywheel that the mechanism slows by a part in 1e12.",
                 floor=1e-9,
             ),
         ),
@@ -107,8 +106,8 @@ ANGLE = _place(
     "CC103",
     "ang",
     "The angle of every link but the driver against the closed form at the commanded time.",
-    "Shorten the step (--steps-per-turn); where the error at the logged crank angle is small, "
-    "mend the drive.",
+    "Shorten the step (--steps-per-turn); if the error at the logged crank angle is small, change "
+    "the drive.",
 )
 DISPLACEMENT = _place(
     "displacement",
@@ -171,8 +170,8 @@ GAP = quantity.Quantity(
             diagram="closure: the widest gap",
             tolerance=replace(
                 WITHIN_A_STEP,
-                reason="The arc of a step, step^2/2 times the curvature, is all that may be open, "
-                "or the jolt that closes it, where that is more.",
+                reason="At most the gap of a step, step^2/2 times the curvature, may be open, or "
+                "the jolt that closes it, if that is more.",
                 conditioned=False,
             ),
             free_motion=replace(WITHIN_A_STEP, conditioned=False),
@@ -212,7 +211,7 @@ TWICE_DERIVED = quantity.Tolerance(
     parts=True,
 )
 FREE_RATE = quantity.Tolerance(
-    "As the phase, which the mechanism passes on to its velocities as their rates say.",
+    "As the phase, times the rates of the velocities.",
     cap=0.2,
     coefficient=14.0,
     power=1.5,
@@ -238,8 +237,8 @@ VELOCITY = quantity.Quantity(
         quantity.Criterion(
             "CC106",
             "velocity, reported",
-            "The velocities that the engine reports, against the closed form at the instants "
-            "that they belong to (some engines log them half a step away from the positions).",
+            "The velocities that the engine reports, against the closed form at their own instants "
+            "(some engines log them half a step away from the positions).",
             "Use the differenced velocities, or shorten the step.",
             short="vel",
             diagram="velocity, as reported",
@@ -280,9 +279,9 @@ ACCELERATION = quantity.Quantity(
         quantity.Criterion(
             "CC108",
             "acceleration, reported",
-            "The accelerations that the engine reports, against the closed form at the instants "
-            "that they belong to; an engine that reports none is not judged.",
-            "Use an integrator of higher order, where the engine has one, or shorten the step.",
+            "The accelerations that the engine reports, against the closed form at their own "
+            "instants; an engine that reports none is not judged.",
+            "Use an integrator of higher order, if the engine has one, or shorten the step.",
             short="acc",
             diagram="acceleration, as reported",
             tolerance=TWICE_DERIVED,

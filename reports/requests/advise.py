@@ -46,7 +46,7 @@ class AdviseRequest:
     ] = ()
     engines: Engines = ()
     study: Annotated[
-        Path | None, option("Folder of sweep -o: what it covers is read from it.", "DIR")
+        Path | None, option("Folder of sweep -o: its runs are used as they are.", "DIR")
     ] = None
     turns: Annotated[float, "Turns of the driver in a run."] = 10.0
     jobs: Jobs = 0

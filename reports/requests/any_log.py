@@ -56,7 +56,7 @@ def _told(map_: MapLike) -> Map:
     if isinstance(map_, Mapping):
         return map_of(map_, "--map")
     if not isinstance(map_, str | PathLike):
-        cure = "give the path of a TOML file, or a dict of what would stand in it"
+        cure = "give the path of a TOML file, or a dict with its tables"
         raise wrong_kind("--map", map_, cure)
     return read_map(path_of(map_, "--map"))
 
@@ -66,7 +66,7 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
     told = _told(map_)
     if isinstance(log, Motion):
         if map_ is not None:
-            raise CrankcheckError("--map: a motion has no columns to be told of; leave it out")
+            raise CrankcheckError("--map: a motion has no columns; leave --map out")
         if isinstance(log, Solution) and log.scene != scene:
             raise CrankcheckError(
                 f"the motion is of {log.scene.name}, not of {scene.name}; give the scene of both"
@@ -90,8 +90,8 @@ def drive_of(name: object, *, forces: object) -> LogDrive:
     drive = one_of(name, "--drive", LOG_DRIVES)
     if is_true(forces, "forces") and drive == "logged":
         raise CrankcheckError(
-            "--forces: with --drive logged the geometry alone is judged, and forces take rates; "
-            "use --drive scene or fitted"
+            "--forces: --drive logged judges the geometry alone, and forces need rates; use "
+            "--drive scene or fitted"
         )
     return cast("LogDrive", drive)
 
@@ -99,7 +99,7 @@ def drive_of(name: object, *, forces: object) -> LogDrive:
 def refuse_run(scene: Scene, run: Run, options: LogOptions) -> None:
     """Refuse options of logs alone, a run that is not of the scene, and forces that it did not log.
     Raises CrankcheckError."""
-    known = f"it is of logs, and this is a run in {run.engine}"
+    known = f"this option is for logs, and this is a run in {run.engine}"
     of_logs = {
         "--step": options.step_s is not None,
         "--drive": one_of(options.drive, "--drive", LOG_DRIVES) != "scene",
@@ -108,17 +108,15 @@ def refuse_run(scene: Scene, run: Run, options: LogOptions) -> None:
     }
     for option in [name for name, is_given in of_logs.items() if is_given]:
         raise CrankcheckError(
-            f"{option}: {known}, which says itself what it is; leave it out, or give frame() of "
-            "the run"
+            f"{option}: {known}, which carries its own settings; leave the option out, or give "
+            "frame() of the run"
         )
     for option, given in (("--segments", options.segments), ("--springs", options.springs)):
         if given is not None:
             raise CrankcheckError(f"{option}: {known}; leave it out")
     _refuse_other_scene(scene, run)
     if is_true(options.forces, "forces") and not run.with_forces:
-        raise CrankcheckError(
-            f"forces: the run in {run.engine} was not asked for them; run it with forces=True"
-        )
+        raise CrankcheckError(f"forces: the run in {run.engine} has none; run it with forces=True")
 
 
 def _refuse_other_scene(scene: Scene, run: Run) -> None:
@@ -128,8 +126,8 @@ def _refuse_other_scene(scene: Scene, run: Run) -> None:
         raise CrankcheckError(f"the run is of {other}, not of {scene.name}; give the scene of both")
     if run.drive not in way_of(scene).drives:
         raise CrankcheckError(
-            f"the run of {run.scene} is of drive {run.drive}, and the scene is let go; run it with "
-            "drive free"
+            f"the run of {run.scene} has drive {run.drive}, and the scene is in free motion; run "
+            "it with drive free"
         )
 
 

@@ -142,8 +142,8 @@ class LetGo(solving.Solving):
         of_driver = "at_deg at_m turns steps_per_turn clockwise along"
         for option in given(request, *of_driver.split()):
             raise CrankcheckError(
-                f"{option}: {scene.name} is let go, and moves over time as masses and forces have "
-                f"it; leave {option} out, and give --duration and --steps"
+                f"{option}: {scene.name} is in free motion, over time; leave {option} out, and "
+                "give --duration and --steps"
             )
         solving.refuse_samples(request)
 
@@ -310,7 +310,7 @@ class ElasticSolving(solving.Solving):
         for option in given(request, "at_deg", "at_m", "clockwise", "along"):
             raise CrankcheckError(
                 f"{option}: {scene.name} has elastic links ({', '.join(scene.elastic)}), whose "
-                f"places depend on how they came there; leave {option} out, and give --turns and "
+                f"places depend on their history; leave {option} out, and give --turns and "
                 "--steps-per-turn"
             )
         solving.refuse_samples(request)

@@ -43,7 +43,7 @@ class HistoryRequest:
     dt_s: options.StepS = None
     steps_per_turn: options.StepsPerTurn = None
     turns: Annotated[float | None, "Turns of the driver (default 2)."] = None
-    free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
+    free: Annotated[bool, "Free motion; all free scenes if none is named."] = False
     duration_s: options.Duration = None
     jobs: options.Jobs = 0
     cache: Annotated[Path | None, option("Where environments and results are kept.", "DIR")] = None

@@ -17,7 +17,7 @@ from models.errors import CrankcheckError
 from models.files.inputs import names_in
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
-from reports.judge import tolerance
+from reports.judge import known, tolerance
 from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
 from reports.output.formats import junit
@@ -32,7 +32,7 @@ from reports.protocol.way import way_of
 from reports.requests import any_log, arguments, options
 from reports.requests.compare import CellVerdict, verdict_of_run
 from reports.requests.options import argument, option, output_option, seconds
-from reports.requests.shown import Shown
+from reports.requests.shown import Shown, present
 from reports.requests.solution import drawn
 from sim.engine import Run
 
@@ -73,7 +73,7 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
             write(path, text)
             return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
         write(path, text)
-        return f"what {log} says, as it was understood{''.join(entries.values())}"
+        return f"columns of {log}, as understood{''.join(entries.values())}"
 
 
 ENTRY = re.compile(r"(\w+) = '([^']+)' in \[(file|time)\]")
@@ -92,6 +92,7 @@ def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[
         "--json": lambda: _json(judged, facts),
         "--junit": lambda: junit(suite(judged, facts)),
         "-o": page,
+        "--write-known": lambda: known.known_file([judged]),
     }
 
 
@@ -288,17 +289,14 @@ def target_of(target: Target) -> dict[str, float]:
     return {EVERY: positive("--target", target, "pure numbers, such as 1e-3")}
 
 
-FORMATS = ("text", "md")
-
-
 @dataclass(frozen=True)
 class JudgeRequest:
     scene: options.SceneName
     log: Annotated[Path, argument("LOG", "Your log: .csv, .tsv, .txt, .parquet or .xlsx.")]
     map: Annotated[Path | None, option("TOML that says what columns mean.", "FILE")] = None
-    write_map: Annotated[
-        Path | None, option("Write the map of what was understood, and end.", "FILE")
-    ] = None
+    write_map: Annotated[Path | None, option("Write the map as understood, and end.", "FILE")] = (
+        None
+    )
     drive: Annotated[str, "scene, fitted (speed and start), or logged (geometry at its angle)."] = (
         "scene"
     )
@@ -312,21 +310,25 @@ class JudgeRequest:
     require: Annotated[
         Sequence[str], option("Quantity or body that has to be in the log.", "NAME")
     ] = ()
-    format: Annotated[str, option("What is printed.", "text|md")] = "text"
+    format: options.TextFormat = "text"
     json: Annotated[Path | None, "Write errors and findings as JSON."] = None
     junit: Annotated[Path | None, "Write JUnit XML, a case per error."] = None
     output: Annotated[Path | None, output_option("Write a page, .html.")] = None
-    free: Annotated[bool, "It is of the driven scene, let go at time 0."] = False
+    free: Annotated[bool, "The log is of the driven scene in free motion from time 0 on."] = False
     forces: Annotated[bool, "Judge its columns of forces and torque as well."] = False
     segments: options.SegmentCount = None
     springs: options.SpringKind = None
+    known: options.KnownPath = None
+    write_known: options.WriteKnown = None
+    strict_known: options.StrictKnown = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 within, 1 out. Raises CrankcheckError for a log that
         can not be read and for a faulty request, before anything is written."""
         scene = outlined(load_scene(self.scene))
         scene = _released(scene, free=self.free)
-        outputs = Outputs({"-o": self.output, "--json": self.json, "--junit": self.junit})
+        files = {"-o": self.output, "--json": self.json, "--junit": self.junit}
+        outputs = Outputs(files | {"--write-known": self.write_known})
         asked = _checked(self, scene, outputs)
         tolerance.check_names(scene)
         _refuse_other_targets(scene, asked.target)
@@ -336,27 +338,23 @@ class JudgeRequest:
             say_whole(console, f"{self.write_map}: {told}")
             return 0
         log = any_log.log_of(scene, self.log, self.map, forces=self.forces)
-        judged = judge_log(log, asked)
+        (judged,) = known.marked([judge_log(log, asked)], self.known)
         facts = provenance({})
         with outputs.written(contents(judged, facts)):
-            if self.format == "md":
-                text = markdown(judged, facts)
-                console.print(text, markup=False, highlight=False, soft_wrap=True)
-            else:
-                show(console, judged, facts)
-        return int(judged.verdict == "out")
+            text = f"{markdown(judged, facts)}\n"
+            present(console, self.format, lambda: text, lambda to: show(to, judged, facts))
+        return int(judged.verdict == "out" or (self.strict_known and bool(judged.mended)))
 
 
 def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogRequest:
     """The request for the judgement. Raises CrankcheckError for a fault that shows beforehand."""
-    if request.format not in FORMATS:
-        raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
     if request.write_map is not None:
         check_file(request.write_map, "--write-map", (".toml",))
     if request.output is not None:
         check_file(request.output, "-o", (".html",))
     files = {"--write-map": request.write_map, **outputs.files}
-    Outputs(files).check((find_scene(request.scene), request.log, request.map))
+    Outputs(files).check((find_scene(request.scene), request.log, request.map, request.known))
+    known.marked([], request.known)  # raises for a faulty file
     drive = any_log.drive_of(request.drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, get_type_hints
 
 import typer
 
 from models.errors import CrankcheckError, shown
+from reports.figures.layout import Layout
 
 
 def seconds(text: str) -> float:
@@ -76,7 +77,13 @@ SpringKind = Annotated[
 Facets = Annotated[
     int | None, option("Cams by contact, of so many facets; default: as the scene says.", "N")
 ]
+KnownPath = Annotated[
+    Path | None, option("Known failures, as TOML; default: the shipped ones.", "FILE")
+]
+WriteKnown = Annotated[Path | None, "Write the failures of this run as known ones, as TOML."]
+StrictKnown = Annotated[bool, "Exit 1 where a known failure is right by now."]
 Jobs = Annotated[int, option("Processes; 0: one per processor.", min=0, max=1024)]
+TextFormat = Annotated[Literal["text", "md"], option("What is printed.", "text|md")]
 PaperSize = Annotated[str, option("A5, A4, A3, A2, or WIDTHxHEIGHT in mm.", "SIZE")]
 
 
@@ -112,7 +119,7 @@ def named(place: str) -> Any:
 
 
 @dataclass(frozen=True)
-class SolveOptions:
+class SolveOptions(Layout):
     """Options of `solve` for scenes of any kind."""
 
     answered_by: ClassVar[str] = "requests.solve:SolveRequest"
@@ -152,7 +159,7 @@ class SolveOptions:
         str | None,
         "Elastic links start periodic, quasi-static or straight (default the scene's own).",
     ] = None
-    linear: Annotated[bool, "Elastic links: leave out that a bent link is shorter."] = False
+    linear: Annotated[bool, "Elastic links: without the shortening of bent links."] = False
     family: Annotated[
         str | None,
         option(
@@ -201,7 +208,7 @@ class VerifyOptions:
     converge: Annotated[
         bool,
         option(
-            "Run at half and quarter step too, and say what the error does.",
+            "Run at half and quarter step too, and print the trend of the error.",
             "--convergence/--no-convergence",
         ),
     ] = True
@@ -209,17 +216,23 @@ class VerifyOptions:
     junit: Annotated[Path | None, "Write JUnit XML."] = None
     csv: Annotated[Path | None, "Write the cells as CSV."] = None
     json: Annotated[Path | None, "Write cells and findings as JSON."] = None
-    folder: Annotated[Path | None, output_option("Write all of them into a folder.")] = None
+    folder: Annotated[
+        Path | None, output_option("Write all of them into a folder, or a page, .html.")
+    ] = None
     baseline: Annotated[
         Path | None, option("Folder of an earlier run; exit 1 when worse than it.", "DIR")
     ] = None
     factor: Annotated[float, "Growth over the baseline that is no fault yet."] = 1.1
     forces: Forces = False
-    free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
+    free: Annotated[bool, "Free motion; all free scenes if none is named."] = False
     duration_s: Duration = None
     segments: SegmentCount = None
     springs: SpringKind = None
     facets: Facets = None
+    known: KnownPath = None
+    write_known: WriteKnown = None
+    strict_known: StrictKnown = False
+    format: TextFormat = "text"
     mjcf: Annotated[
         Path | None,
         of_model("A MuJoCo model, run as it is; needs --drive JOINT and --speed.", "FILE"),
@@ -246,7 +259,8 @@ class VerifyOptions:
     @property
     def files(self) -> dict[str, Path | None]:
         """The named files, by option."""
-        return {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
+        files = {"--junit": self.junit, "--csv": self.csv, "--json": self.json}
+        return files | {"--write-known": self.write_known}
 
 
 OF_MODELS = ["speed_rad_s", "key", "start_deg", "branch", "write_scene", "limit_s", "memory_gb"]
@@ -257,6 +271,6 @@ def refuse_of_models(request: VerifyOptions) -> None:
     """Refuse options that do not apply to scenes. Raises CrankcheckError."""
     for given_option in given(request, *OF_MODELS):
         raise CrankcheckError(
-            f"{given_option}: it is of a model of your own; name that with --mjcf FILE, or leave "
+            f"{given_option}: for a model of your own; name it with --mjcf FILE, or leave "
             f"{given_option} out"
         )

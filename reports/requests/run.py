@@ -100,8 +100,8 @@ class RunRequest:
     every: Annotated[int, options.option("Log every N-th step.", "N")] = 1
     drive: Annotated[
         str | None,
-        "prescribed, servo, or free (nothing drives it); default free for a scene that is "
-        "let go, else prescribed.",
+        "prescribed, servo, or free (no drive); default: free for a scene of free motion, else "
+        "prescribed.",
     ] = None
     output: Annotated[Path | None, options.output_option("Write .csv, .parquet or .xlsx.")] = None
     forces: options.Forces = False
@@ -259,18 +259,18 @@ def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> Non
     for name in options.given(request, "turns", "steps_per_turn"):
         if name not in way_of(scene).lengths_by:
             raise CrankcheckError(
-                f"{name}: {scene.name} is let go, and has no turns; give --dt and --duration, in "
-                "seconds"
+                f"{name}: {scene.name} is in free motion, and has no turns; give --dt and "
+                "--duration, in seconds"
             )
         if request.duration_s is not None:
             raise CrankcheckError(
-                f"--duration and {name}: a run that is let go has its length in seconds, or that "
-                "of turns of the law that drove it; give one of them"
+                f"--duration and {name}: free motion lasts for seconds, or for turns of the law "
+                "that drove it; give one of them"
             )
     if request.duration_s is not None and "--duration" not in way_of(scene, drive).lengths_by:
         raise CrankcheckError(
-            f"--duration: it is of runs that are let go, and {scene.name} is driven; give --turns, "
-            "or let it go with --drive free"
+            f"--duration: for free motion, and {scene.name} is driven; give --turns, or --drive "
+            "free"
         )
 
 
@@ -282,6 +282,6 @@ def _drive(scene: Scene, drive: str | None) -> Drive:
     driven = cast(Drive, arguments.one_of(drive, "--drive", DRIVES))
     if driven not in chosen.drives:
         raise CrankcheckError(
-            f"--drive {driven}: {scene.name} is let go, and nothing drives it; leave --drive out"
+            f"--drive {driven}: {scene.name} is in free motion, without a drive; leave --drive out"
         )
     return driven

@@ -20,6 +20,7 @@ from models.motion import Motion
 from models.scene import Scene, laws
 from reports.describe.facts import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
+from reports.figures.layout import laid_out
 from reports.output.formats import ENDINGS
 from reports.output.write import check_file
 from reports.requests import solving
@@ -95,9 +96,8 @@ def _refuse_far(scene: Scene, motion: Motion) -> None:
     turns = far_s / scene.driver.law.period_s
     if turns > laws.MOST_TURNS:
         raise CrankcheckError(
-            f"time_s: t = {far_s:.6g} s is {turns:.3g} turns of {scene.name}, and at most "
-            f"{laws.MOST_TURNS:g} leave the digits that tell where in a turn it is; "
-            "give times in seconds"
+            f"time_s: t = {far_s:.6g} s is {turns:.3g} turns of {scene.name}; beyond "
+            f"{laws.MOST_TURNS:g} the rounding of a turn is too large; give times in seconds"
         )
 
 
@@ -149,6 +149,7 @@ def solve_driven(
 
 @dataclass(frozen=True)
 class SolveRequest(SolveOptions):
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write the reference. Raises CrankcheckError for a faulty request."""
         if self.output is not None:
@@ -180,15 +181,15 @@ class DrivenSolving(solving.Solving):
         place, is_drawn = request.at_place, request.figures is not None
         if place and (request.turns or request.steps_per_turn):
             raise CrankcheckError(
-                f"{place} with --turns or --steps-per-turn: one is a single "
-                "position, the others a motion; give one of them"
+                f"{place} with --turns or --steps-per-turn: a single position, and a motion; give "
+                "one of them"
             )
         if request.clockwise and not place:
-            raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
+            raise CrankcheckError("--clockwise: for one position; give --at-deg, such as 90")
         if is_drawn and not request.forces:
-            raise CrankcheckError("--figures: it draws forces; give --forces as well")
+            raise CrankcheckError("--figures: draws forces; give --forces as well")
         if is_drawn and place:
-            why = "they are of a turn; leave one of them out"
+            why = "they belong to a turn; leave one of them out"
             raise CrankcheckError(f"--figures with {place}: {why}")
         whole = [*given(request, "at_deg", "at_m", "turns", "steps_per_turn")]
         if solving.is_page(request) and whole:

@@ -102,7 +102,7 @@ class ElasticChoice:
             law, driver.Controlled
         )
         if chosen == "periodic" and not told:
-            words = "is let go" if scene.is_free else "does not come back after a period"
+            words = "is in free motion" if scene.is_free else "is not periodic"
             raise CrankcheckError(
                 f"--shape periodic: the driver of {scene.name} {words}; give it a constant "
                 "speed, or --shape quasi-static"
@@ -253,8 +253,8 @@ def refuse_times(scene: Scene, request: SolveOptions) -> None:
     for option, value in (("--duration", request.duration), ("--steps", request.steps)):
         if value is not None:
             raise CrankcheckError(
-                f'{option} {value:g}: {scene.name} is driven, and not let go (law = "free"); give '
-                "--turns and --steps-per-turn"
+                f'{option} {value:g}: {scene.name} is driven, not in free motion (law = "free"); '
+                "give --turns and --steps-per-turn"
             )
 
 

@@ -200,7 +200,7 @@ class SweepRequest:
     keep_trajectories: Annotated[bool, "Keep the whole motion of every cell."] = False
     again: Annotated[bool, "Run cells again that timed out or crashed."] = False
     forces: options.Forces = False
-    free: Annotated[bool, "Let scenes go; those of free motion if none is named."] = False
+    free: Annotated[bool, "Free motion; all free scenes if none is named."] = False
     dt_s: Annotated[str | None, option("Steps of free motion, seconds.", "--dt S,S,...")] = None
     duration_s: options.Duration = None
     segments: Annotated[

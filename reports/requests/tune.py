@@ -44,7 +44,7 @@ class TuneRequest:
     turns: Annotated[float, "Turns of the driver in a run."] = 2.0
     output: Annotated[Path | None, output_option("Keep the search (.db), to go on later.")] = None
     limit_s: Annotated[float, "Longest time for a run, in seconds."] = 20.0
-    timing: Annotated[bool, "Time what was found beside the profile."] = True
+    timing: Annotated[bool, "Time the found settings beside the profile."] = True
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 when settings reach the target, 1 when none do.
@@ -94,13 +94,13 @@ def _how(
     after = sum(each.runs for each in tried)
     late = sum(each.timed_out for each in (*trials, *tried))
     lost = (
-        f" The clock ended {late} of what was tried (--limit-s {request.limit_s:g}), which is not "
-        "kept: where runs are quicker, a search may find otherwise."
+        f" The time limit ended {late} of the trials (--limit-s {request.limit_s:g}), which are "
+        "not kept: a search with quicker runs may have another result."
     )
     return (
         f"Seed {request.seed}: {len(trials)} trials, of which {sum(a.reached for a in trials)} "
         f"reach the target; {sum(a.runs for a in trials) + after + around} runs in all, {after} of "
-        "them to set back what gains nothing."
+        "them to set back settings without gain."
     ) + (lost if late else "")
 
 
@@ -153,7 +153,7 @@ def _searched(
                 say_whole(
                     progress,
                     f"{len(attempts(study))} of {request.budget} trials are kept in "
-                    f"{request.output}; the same command goes on from there",
+                    f"{request.output}; the same command continues from there",
                 )
             raise
 

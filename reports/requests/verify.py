@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, cast
 
 from rich.console import Console
@@ -12,7 +13,7 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from models.files.reading import find_scenes
 from models.scene import Scene
-from reports.judge import rows, tolerance
+from reports.judge import known, rows, tolerance
 from reports.judge.cell import Cell, Checked
 from reports.output.console import say_whole, tell
 from reports.output.formats import csv, json_text, junit, parquet
@@ -22,8 +23,10 @@ from reports.plan.singular import gives_forces, silent_note
 from reports.protocol.length import Length
 from reports.protocol.way import driven_by, laid_out, way_of
 from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
+from reports.requests.shown import Print, as_markdown, as_page, present
+from reports.requests.solution import drawn
 from reports.verify.advised import check_all
-from reports.verify.table import show, suite
+from reports.verify.table import show, suite, summary
 from sim.engine import Drive
 from sim.registry import engine
 
@@ -49,11 +52,12 @@ class VerifyRequest(VerifyOptions):
         refuse_of_models(self)
         cells = plan(self)
         outputs = Outputs(self.files, self.folder, IN_FOLDER)
-        outputs.check(find_scenes(self.names))
         if self.baseline is not None:  # which ``-o`` may go on from, and no other output write over
             from reports.requests.diff import stored_files
 
             Outputs(self.files).check(stored_files(self.baseline))
+        outputs.check([*find_scenes(self.names), self.known])
+        known.marked([], self.known)  # raises for a faulty file
         digests = _digests(self)
         silent = (
             silent_note(requirements.chosen_engines(())) if self.forces and not self.engines else ""
@@ -66,6 +70,7 @@ class VerifyRequest(VerifyOptions):
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("verifying", total=len(cells))
             checked = check_all(cells, self.jobs, lambda _: bar.advance(task))
+        checked = known.marked(checked, self.known, self.names)
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
         diff = None
@@ -74,14 +79,18 @@ class VerifyRequest(VerifyOptions):
             from reports.results.runs import run_of
 
             diff = compare(base, run_of(checked, facts, digests), self.factor)
-        with outputs.written(contents(checked, facts, digests, diff)):
-            show(console, checked, facts)
-            if diff:
-                from reports.diff.document import show_diff
+        shows: list[Print] = [partial(show, checked=checked, facts=facts)]
+        if diff:
+            from reports.diff.document import show_diff
 
-                console.print()
-                show_diff(console, diff)
-        return _code(checked, diff, progress)
+            shows.append(partial(show_diff, diff=diff))
+        title = f"verify: {summary(checked).plain}"
+        scenes = {one.cell.scene.name: one.cell.scene for one in checked}.values()
+        page = {"verify.html": lambda: as_page(title, facts, "".join(map(drawn, scenes)), *shows)}
+        with outputs.written(contents(checked, facts, digests, diff) | page):
+            present(console, self.format, lambda: as_markdown(title, *shows[::-1]), *shows)
+        mended = self.strict_known and any(one.mended for one in checked)
+        return _code(checked, diff, progress) or int(mended)
 
 
 def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> int:
@@ -150,14 +159,14 @@ def _scenes(request: VerifyOptions) -> list[Scene]:
 def _refuse_options(request: VerifyOptions, scenes: Sequence[Scene]) -> None:
     if request.drive not in ("prescribed", "servo"):
         raise CrankcheckError(
-            f"--drive {request.drive!r}: unknown; use prescribed or servo, let scenes go with "
-            "--free, or name the model whose joint that is with --mjcf FILE"
+            f"--drive {request.drive!r}: unknown; use prescribed or servo, --free for free motion, "
+            "or name the model with that joint with --mjcf FILE"
         )
     other = [scene.name for scene in scenes if request.drive not in way_of(scene).drives]
     if other and request.drive != PRESCRIBED:
         raise CrankcheckError(
-            f"--drive {request.drive}: {other[0]} is let go, and nothing drives it; leave --drive "
-            "out, or the scene"
+            f"--drive {request.drive}: {other[0]} is in free motion, without a drive; leave "
+            "--drive out, or the scene"
         )
     lengths = {"--duration": request.duration_s, "--turns": request.turns}
     lengths["--steps-per-turn"] = request.steps_per_turn
@@ -204,6 +213,7 @@ IN_FOLDER = {
     "verify.json": "--json",
     "verify.junit.xml": "--junit",
     "errors.parquet": "",
+    "verify.html": "-o",
 }
 
 
@@ -228,6 +238,7 @@ def contents(
         "verify.json": lambda: _json(checked, facts, digests),
         "verify.junit.xml": suites,
         "errors.parquet": lambda: parquet(rows.error_frame(checked)),
+        "--write-known": lambda: known.known_file(one for one in checked if one.cell.gated),
     }
 
 
@@ -240,6 +251,7 @@ def _json(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping
             "not_reported": list(one.errors.not_reported) if one.errors else [],
             "notes": list(one.errors.notes) if one.errors else [],
             "findings": [vars(finding) for finding in one.findings],
+            "known": one.known_text,
         }
         for one in checked
     ]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from numbers import Real
 from os import PathLike
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files.assemble import scene_text
+from reports.judge.known import known_file, marked
 from reports.judge.rows import cell_frame, error_frame
 from reports.judge.tolerance import parse
 from reports.output.formats import csv, junit, parquet
@@ -21,11 +23,11 @@ from reports.output.write import Outputs, check_file, provenance
 from reports.own_model.account import read
 from reports.own_model.assembly import ModelRequest
 from reports.own_model.judged import JudgedModel, run_lines
-from reports.own_model.table import document, is_diff, recommended_head, show
+from reports.own_model.table import document, is_diff, recommended_head, show, verdict_text
 from reports.plan.steps import TURNS, positive
 from reports.requests import arguments
 from reports.requests.options import PRESCRIBED, VerifyOptions, given
-from reports.requests.shown import Shown
+from reports.requests.shown import Shown, as_markdown, present
 from reports.verify.table import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
 from sim.registry import engine
@@ -156,7 +158,7 @@ IN_FOLDER = {
     "scene.toml": "--write-scene",
     "recommended.diff": "",
     "recommended.txt": "",
-    "page.html": "",
+    "page.html": "-o",
 }
 NOT_OF_MODELS = [
     *("scenes", "engines", "profiles", "jobs", "baseline"),
@@ -175,26 +177,28 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
         check_file(request.write_scene, "--write-scene", (".toml",))
     files = request.files | {"--write-scene": request.write_scene}
     outputs = Outputs(files, request.folder, IN_FOLDER)
-    outputs.check([asked.path])
+    outputs.check([asked.path, request.known])
+    marked([], request.known)  # raises for a faulty file
     account = read(asked, limits)
     outputs.check(account.files)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("running", total=len(account.profiles))
         judged = run_lines(account, limits, lambda _: bar.advance(task))
+    judged = replace(judged, lines=marked(judged.lines, request.known))
     name = reading_engine()
     facts = provenance({name: engine(name).version()})
     with outputs.written(_contents(judged, facts)):
-        show(console, judged, facts)
-    return {"within": 0, "out": 1}.get(judged.verdict, 2)
+        told, title = partial(show, judged=judged, facts=facts), verdict_text(judged)
+        present(console, request.format, lambda: as_markdown(f"verify: {title}", told), told)
+    mended = int(request.strict_known and bool(judged.own.mended))
+    return {"within": mended, "known": mended, "out": 1}.get(judged.verdict, 2)
 
 
 def _asked(request: VerifyOptions) -> ModelRequest:
     """The request for the model. Raises CrankcheckError for options that do not apply to it."""
     assert request.mjcf is not None
     for option in given(request, *NOT_OF_MODELS):
-        raise CrankcheckError(
-            f"--mjcf and {option}: a model of your own runs by itself, as it is; leave out one"
-        )
+        raise CrankcheckError(f"--mjcf and {option}: a model of your own runs alone; leave out one")
     if request.speed_rad_s is None:
         raise CrankcheckError("--speed is missing: give that of the crank in rad/s, such as 10")
     return ModelRequest(
@@ -236,6 +240,7 @@ def _contents(
         "verify.json": lambda: document(judged, facts),
         "verify.junit.xml": lambda: junit(suite(judged.lines, facts)),
         "errors.parquet": lambda: parquet(error_frame(judged.lines)),
+        "--write-known": lambda: known_file([judged.own]),
         "scene.toml": lambda: scene_text(judged.scene),
         # Empty where there is none: one of an earlier run must not stay.
         "recommended.diff": lambda: judged.patch if is_diff(judged.patch) else "",

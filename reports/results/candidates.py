@@ -98,7 +98,7 @@ def _cost(line: Line, dt_s: float) -> float:
 
 MEANS = (
     "Geometric means over the scenes, interpolated along the fits; m/n: so on m of n scenes only. "
-    "Where the coarsest step reaches an error already, its time stands: nothing is extrapolated."
+    "If the coarsest step reaches an error already, its time stands: nothing is extrapolated."
 )
 
 

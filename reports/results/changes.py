@@ -242,7 +242,6 @@ def refuse_gone(old: StoredRun, new: StoredRun) -> None:
             continue
         busy = any(BUSY in each for each in run.gone)
         raise CrankcheckError(
-            f"{run.label}: {which} may be among what is missing there "
-            f"({'; '.join(run.gone)}); {'let its sweep end' if busy else 'mend it'} first, or "
-            "compare with a whole run"
+            f"{run.label}: {which} may be among the missing cells there ({'; '.join(run.gone)}); "
+            f"{'let its sweep end' if busy else 'mend it'} first, or compare with a whole run"
         )

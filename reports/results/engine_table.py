@@ -21,7 +21,7 @@ FEWEST = 3
 """Engines from which on they are put side by side."""
 NEAR_S = 1e-3
 TARGETS = (1e-3, 1e-4)
-FREE = ("let go",)
+FREE = ("free",)
 FORCES = "reaction_pure"
 
 
@@ -127,7 +127,7 @@ def _floor(fits: Sequence[LineFit]) -> Score:
         seen = f"on {len(floors)} of {count(len(fits), 'scene')}"
         return Score(error_text(max(floors)), seen)
     if below := [fit.floor_below for fit in fits if math.isfinite(fit.floor_below)]:
-        return Score("none", f"below {error_text(max(below))}")
+        return Score(f"< {error_text(max(below))}", "not excluded")
     return Score(remark=_kind(fits) if fits else "not run")
 
 

@@ -32,7 +32,7 @@ UNTOLD_ORDER = 1.0
 finest errors hardly differ, and the order hardly matters."""
 LEAST_ORDER = 0.3
 """Order below which nothing falls with the step."""
-LEFT = "the logged crank left the reach of the mechanism"
+LEFT = "the logged crank left the range of the mechanism"
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class ErrorParts:
     """Parts of the error of one cell, pure, with sign, shape (T,) each; their sum is ``total``.
 
     ``floor`` and ``discretisation`` are None where no floor is known, and ``drive`` and
-    ``geometric`` where the logged crank left the reach of the mechanism.
+    ``geometric`` where the logged crank left the range of the mechanism.
     """
 
     time_s: Array
@@ -176,7 +176,7 @@ def _limit(line: Line, traces: Mapping[str, Trace], body: CurveBody) -> _Extrapo
     ][:3]
     if len(finest) < 3:
         left = any(key in traces for key in stood_on["key"])
-        return LEFT if left else "no run that the fit stands on was logged"
+        return LEFT if left else "no fitted run was logged"
     fine = _extrapolated(finest[0], finest[1], order, line.period_s)
     coarse = _extrapolated(finest[1], finest[2], order, line.period_s)
     if fine is None:

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from models.array import Array
-from reports.output.numbers import count, short
+from reports.output.numbers import count, floor_words, short
 from reports.results import fit_forms
 from reports.results.floor_fit import ALIGNMENTS, ORDERS, ErrorCurve, reach, straight, within
 from sim.engine import AT_ROUNDING
@@ -68,7 +68,7 @@ class LineFit:
 
     @property
     def finest_error(self) -> float:
-        """Error at the finest step that ended well; NaN where none did."""
+        """Error at the finest step without failure; NaN where none did."""
         return self.runs[0][1] if self.runs else math.nan
 
     @property
@@ -269,7 +269,8 @@ VAGUE = 0.15
 
 
 def words(fit: LineFit, unit: str, period_s: float, turn: str = "turn") -> str:
-    """Return the verdict in words: 'order 2.0, no floor seen', 'diverges below 90 steps per turn'.
+    """Return the verdict in words: 'order 2.0; a floor below 7.2e-9 rad is not excluded by these
+    steps', 'diverges below 90 steps per turn'.
 
     ``period_s`` is the time of a ``turn`` [s], which may have another name.
     """
@@ -287,9 +288,9 @@ def words(fit: LineFit, unit: str, period_s: float, turn: str = "turn") -> str:
 
 def _told(fit: LineFit, unit: str) -> str:
     if fit.kind == "order":
-        return _order(fit)
+        return _order(fit, unit)
     if fit.kind == "floor":
-        return f"converges to the wrong answer: floor {short(fit.floor)} {unit}"
+        return f"converges to the wrong answer: {floor_words(fit.floor, unit=unit)}"
     if fit.kind == "grows":
         return f"does not shrink: grows to {short(fit.finest_error)} {unit}"
     if fit.kind == "irregular":
@@ -302,11 +303,11 @@ def _told(fit: LineFit, unit: str) -> str:
     return "at rounding"
 
 
-def _order(fit: LineFit) -> str:
+def _order(fit: LineFit, unit: str) -> str:
     if fit.order + fit.order_error < fit_forms.LEVEL:
         return f"order {fit.order:.1f}: slower than any integrator, a floor may be near"
     vague = f" +- {fit.order_error:.1f}" if fit.order_error > VAGUE else ""
-    return f"order {fit.order:.1f}{vague}, no floor seen"
+    return f"order {fit.order:.1f}{vague}; {floor_words(math.nan, fit.floor_below, unit)}"
 
 
 def _irregular(fit: LineFit, unit: str) -> str:

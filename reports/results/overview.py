@@ -237,7 +237,7 @@ def _in_turns(lines: Sequence[Line], of: str = "steps per turn") -> str:
 def _in_seconds(lines: Sequence[Line]) -> str:
     dts = sorted({float(dt) for line in lines for dt in line.cells["dt_s"]}, reverse=True)
     lasts = listed([duration(s) for s in sorted({line.lasts_s for line in lines})])
-    return f"{_where(lines)}, let go for {lasts}, dt {listed([duration(dt) for dt in dts])}"
+    return f"{_where(lines)}, free motion for {lasts}, dt {listed([duration(dt) for dt in dts])}"
 
 
 _STUDIES: Mapping[Clock, Callable[[Sequence[Line]], str]] = {

@@ -121,7 +121,7 @@ class StoredRun:
             f"{count(len(names), 'cell')}: scenes {each_once(name.scene for name in names)}",
             each_once(f"{name.engine} {name.variant}" for name in names),
             *([steps_told(turning), f"{_each_long(turning)} turns"] if turning else []),
-            *([f"let go {steps_told(timed)}", f"for {_each_long(timed)} s"] if timed else []),
+            *([f"free motion, {steps_told(timed)}", f"for {_each_long(timed)} s"] if timed else []),
             f"drive {each_once(name.drive for name in names)}",
         ]
         return f"{self.label} holds {'; '.join(parts)}"
@@ -147,7 +147,7 @@ def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> StoredRun:
         steps, turns = same(cell.steps_per_turn), same(cell.turns)
         name = CellName(cell.scene.name, cell.engine, cell.profile, cell.drive, steps, turns)
         planned[name] = StoredCell(name, "", "", "", {}, scene_digest=digests.get(name.scene, ""))
-    return StoredRun("what was asked for", planned)
+    return StoredRun("the requested engine", planned)
 
 
 def stored_cell(row: CellRow, facts: Mapping[str, str]) -> StoredCell:

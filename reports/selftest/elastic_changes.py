@@ -42,7 +42,7 @@ class ElasticRun:
     def words(self) -> str:
         """Segments or elements, steps and length."""
         pieces = "elements of a beam" if self.springs == "beam" else "segments"
-        told = "a turn, 1 turn" if self.lasts_s is None else f"in {self.lasts_s:g} s, let go"
+        told = "a turn, 1 turn" if self.lasts_s is None else f"in {self.lasts_s:g} s of free motion"
         return f"{self.segments} {pieces}, {self.steps} steps {told}"
 
 

@@ -37,7 +37,7 @@ def show_faults(
         console.print(_without(run))
     console.print("", _table(verdicts, engines, console.width), "")
     if passed:
-        console.print(Text("not seen, and need not be", "bold"), _unseen(passed), "")
+        console.print(Text("not seen, and not required", "bold"), _unseen(passed), "")
     console.print(total(verdicts))
     console.print(_footer(verdicts, facts), style="dim", highlight=False)
 
@@ -84,7 +84,7 @@ def _told(console: Console, verdict: Verdict) -> None:
 
 def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> Table:
     wide = width >= WIDE
-    heads = ["", "fault", *["what is wrong"] * wide, "planted size", "caught\nby"]
+    heads = ["", "fault", *["fault"] * wide, "planted size", "caught\nby"]
     heads += [f"from on,\n{engine}:" for engine in engines]
     table = grid(heads, gap=1, whole=("fault", "caught\nby"), cut=("",))
     for group in dict.fromkeys(one.fault.group for one in verdicts):
@@ -96,10 +96,10 @@ def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> T
 
 
 def _unseen(passed: Sequence[Passed]) -> Table:
-    table = grid(("", "planted", "why it need not be seen"), gap=1)
+    table = grid(("", "planted", "why it is not required to be seen"), gap=1)
     for one in passed:
         failed = dict.fromkeys(rule for rules in one.failed.values() for rule in rules)
-        reason = f"Seen all the same, by {', '.join(failed)}." if failed else one.unseen.reason
+        reason = f"Seen nevertheless, by {', '.join(failed)}." if failed else one.unseen.reason
         if one.nothing:
             reason = (
                 f"Nothing was planted in {' and '.join(one.nothing)}: every error is as before."

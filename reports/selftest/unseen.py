@@ -98,23 +98,24 @@ UNSEEN = (
            engines.after_a_third(lambda tools: lambda session, n: tools.pull(session, 9.81 * n)),
            needs=lambda name: name in offering("spoiler")),
     Unseen("error-tenth", "places with a tenth of their error",
-           "An engine that errs less is a better engine; what is nearer than its order allows is "
-           "seen (too-good).",
+           "An engine that errs less is a better engine; errors below its order are seen "
+           "(too-good).",
            in_log(_tenth)),
     Unseen("even-taken", "the crank's pin, from the reference",
-           "What moves evenly with the crank comes out right to rounding in an engine as well.",
+           "A body that moves evenly with the crank is right to rounding in an engine as well.",
            in_log(_even_taken), shows=False),  # where the engine has those very numbers
-    Unseen("gap-shut", "one gap of several is 0, as in truth",
-           "An engine may hold some of its joints exactly, by the coordinates that it has; it is "
-           "the widest gap that is looked at (too-good-gaps).",
+    Unseen("gap-shut", "one gap of several is 0, as in the reference",
+           "An engine may hold some of its joints exactly, by its coordinates; the widest gap is "
+           "checked (too-good-gaps).",
            in_log(_one_shut), shows=False),
     Unseen("all-renamed", "another engine's run, all its words false",
-           "Numbers within every limit, from a run that says in every word and setting what was "
-           "asked for, are as good as those of that run; one false word is seen (engine-renamed).",
+           "Numbers within every limit, from a run that says in every word and setting the "
+           "requested engine, are as good as those of that run; one false word is seen "
+           "(engine-renamed).",
            _all_renamed, needs=_as_silent),
     Unseen("turns-counted", "an angle counted from another whole turn",
-           "Engines count turns from where they like; one that is gained or lost on the way is "
-           "seen (whole-turn).",
+           "Engines count turns from any start; one gained or lost on the way is seen "
+           "(whole-turn).",
            in_log(of_output("theta", lambda theta, size: theta + 2.0 * np.pi * round(size))),
            shows=False),
     Unseen("cost-halved", "half the time that the run took",
@@ -129,27 +130,26 @@ UNSEEN_FREE = (
            free_changes.in_free_scene(free_changes.of_all_matter),
            shows=False),  # of a factor of two not one bit changes in some engines
     Unseen("energy-even", "the energy of the start at every instant",
-           "The energy is worked out of the logged motion here, and not told by an engine: what "
-           "damps or drives that motion is seen in it (damping-left-on, energy-fed).",
+           "The energy is computed from the logged motion here, and not reported by an engine: "
+           "damping or driving of that motion is seen in it (damping-left-on, energy-fed).",
            _of_energy(_even)),
     Unseen("energy-half-step", "potential energy of half a step before",
            "The total comes and goes with the motion by as much as a step makes of it, as that of "
            "an engine does; its drift is judged, and the motion itself.",
            _of_energy(_half_a_step)),
-    Unseen("energy-parts", "kinetic energy told as potential",
-           "The total is judged: both parts are worked out of the logged motion here.",
+    Unseen("energy-parts", "kinetic energy reported as potential",
+           "The total is judged: both parts are computed from the logged motion here.",
            _of_energy(lambda energy: Energy(energy.potential_j, energy.kinetic_j)),
            shows=False),  # a sum does not know its order
 )  # fmt: skip
 UNSEEN_ELASTIC = (
     Unseen("node-elsewhere", "a node away from the middle, 1 % too far out",
-           "How far the middle is from the line between the pins is what is compared; a chain that "
-           "is bent otherwise elsewhere moves otherwise in its middle, too, unless only its log is "
-           "off.",
+           "The distance of the middle from the line between the pins is compared; a chain bent "
+           "otherwise elsewhere also moves otherwise in its middle, unless only its log is off.",
            in_chain_log(lambda truth, motion, size: at_quarter(truth, motion, 1e-2 * size)),
            shows=False),  # nothing of it is among the errors
     Unseen("modulus-hardly", "the modulus, by 0.01 %",
-           "Within what an engine may be off by at this step; 1 % is seen (modulus-off).",
+           "Within the limit of this step; 1 % is seen (modulus-off).",
            in_given(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size)))),
     Unseen("turning-inertia", "segments with 1 % less inertia about their centre",
            "Most of the inertia of a chain is that of its masses across; what rods have about "

@@ -183,7 +183,7 @@ def _line(child: Isolated[GradedPicture], given: CaseLine) -> Held:
 def _graded(
     given: CaseLine, value: float, child: Isolated[GradedPicture], *, grid: bool
 ) -> GradedPicture:
-    """Return a run of the child process, with its picture where it is of the grid; one that its
+    """Return a run of the child process, with its picture if it belongs to the grid; one that its
     process did not survive has crashed.
 
     Raises CrankcheckError for a run without a reference, or a request that the engine can not take:

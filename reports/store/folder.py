@@ -81,7 +81,9 @@ def open_part(path: Path) -> TablePart:
     raw = regular_bytes(path, MOST_BYTES)
     if not path.stem.endswith(_seal(raw)):
         whole = raw.endswith(MAGIC)
-        raise UnreadableError("not as it was written: its checksum differs" * whole or "cut short")
+        raise UnreadableError(
+            ("changed since it was written: its checksum differs") * whole or "cut short"
+        )
     return TablePart(path, pq.ParquetFile(pa.BufferReader(raw)))
 
 

@@ -90,7 +90,7 @@ def _plain(value: object) -> object:
 
 
 Cure = Literal["sweep", "wait", "nothing"]
-BUSY = "a sweep is writing here: what it has finished is shown"
+BUSY = "a sweep is writing here: its finished cells are shown"
 MOST_LINES = 20
 """Lines of a notice; more of them are counted."""
 COMMANDS = 3
@@ -139,8 +139,8 @@ def notice(
     if not bad:
         return [f"{head}; there is also", *indented(other)] if other else [head]
     cure = (
-        f"what mends it: {command(folder, runs)}",
-        f"(moves what is damaged to {folder}/damaged, and runs what is missing)",
+        f"to repair it: {command(folder, runs)}",
+        f"(moves damaged files to {folder}/damaged, and runs missing cells)",
     )
     return [head, *indented([*bad, *other]), *indented(cure)]
 
@@ -224,7 +224,7 @@ def read_manifest(folder: Path) -> Manifest:
     if not (isinstance(scenes, dict) and isinstance(runs, list)):
         raise UnreadableError("no manifest: without scenes or runs, or with others than a sweep's")
     if raw.get("seal") != _seal({"scenes": scenes, "runs": runs}):
-        raise UnreadableError("not as it was written: its checksum differs")
+        raise UnreadableError("changed since it was written: its checksum differs")
     return Manifest(scenes, tuple(runs))
 
 

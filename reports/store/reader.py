@@ -24,9 +24,9 @@ from reports.workers.isolated import Limits
 HARD = ("stability.json", "stability.csv", "stability.html")
 """Files that `crankcheck stability` may have put beside a sweep."""
 OWN = {MANIFEST, *TABLES, *HARD, manifests.LOCK, manifests.DAMAGED, manifests.TRAJECTORIES}
-STOPPED = "not all that its sweeps asked for; was one stopped?"
+STOPPED = "fewer cells than its sweeps requested; was one stopped?"
 REPEATED = "rows that another part has too; those written last count"
-UNASKED = f"cells that no sweep in {MANIFEST} asked for; left out, until one asks for them"
+UNASKED = f"cells that no sweep in {MANIFEST} requested; left out until one does"
 
 
 @dataclass(frozen=True)
@@ -217,7 +217,7 @@ def _refuse_unknown(folder: Path) -> None:
         if files.has_parts(folder):
             mends = manifests.command(folder, ())
             raise CrankcheckError(
-                f"{folder}: {MANIFEST}: {error}; what mends it: {mends} (keeps every cell that is "
+                f"{folder}: {MANIFEST}: {error}; to repair it: {mends} (keeps every cell that is "
                 "whole)"
             ) from None
         raise CrankcheckError(

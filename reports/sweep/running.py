@@ -212,7 +212,7 @@ def swept(
             if manner.timing:
                 done = running.timings(done)
         except Stopped:
-            progress.print("what is done is kept; the same command goes on from there")
+            progress.print("what is done is kept; the same command continues from there")
             raise
     return laid, done
 

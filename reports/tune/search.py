@@ -282,8 +282,8 @@ def _refuse_other(path: Path, earlier: Asked, asked: Asked) -> None:
         if earlier.get(name) != asked[name]:
             was, now = _short(earlier.get(name)), _short(asked[name])
             raise CrankcheckError(
-                f"-o {path}: holds a search with {name} {was}; asked was {name} {now}: name "
-                f"another file, or ask as before"
+                f"-o {path}: holds a search with {name} {was}; requested was {name} {now}: name "
+                "another file, or use the same options"
             )
 
 

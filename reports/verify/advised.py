@@ -69,12 +69,12 @@ def _remedy(checked: Checked, choices: Sequence[Settings]) -> str:
     still = ", ".join(outcomes[best].failing)
     if outcomes[best].share < math.inf and HELPS * outcomes[best].share <= before:
         return f"Tried at the same step: {left}" + (f"; still out by {still}." if still else ".")
-    none = f"Nothing tried at the same step lowers the error threefold: {', '.join(outcomes)}."
+    none = f"No tried setting lowers the error threefold at the same step: {', '.join(outcomes)}."
     if not still:
         return f"{none} But {left}."
     half = _outcome(checked, replace(cell, dt_s=cell.dt_s / 2, steps=2 * cell.steps), rule)
     if half.share == math.inf:
-        return f"{none} Half the step mends nothing."
+        return f"{none} Half the step does not help."
     return f"{none} Half the step leaves {_of_limit(half.share, before)}."
 
 
@@ -103,13 +103,11 @@ def _share(checked: Checked, rule: str) -> float:
     if checked.status != "ok":
         return math.inf
     parts = [
-        finding.number / finding.limit
+        finding.taken
         for finding in checked.findings
         if finding.rule in ([rule] if rule else (*PLACES, *RATES, *FORCES))
-        and finding.number is not None
-        and finding.limit
     ]
-    return max((math.inf if math.isnan(part) else part for part in parts), default=math.inf)
+    return max((part for part in parts if not math.isnan(part)), default=math.inf)
 
 
 def _of_limit(after: float, before: float) -> str:

@@ -5,7 +5,7 @@ The heads of columns stand in `reports.quantities`, footers and room in ``report
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import cast
 from xml.etree.ElementTree import Element
@@ -22,7 +22,7 @@ from reports.judge.rules.rule import Finding
 from reports.judge.three_steps import Convergence
 from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, remark, suite_of
-from reports.output.numbers import count
+from reports.output.numbers import count, readable
 from reports.protocol.way import WAYS
 from reports.quantities import QUANTITIES, named
 
@@ -65,7 +65,7 @@ class CellTable:
         apart = width >= self.apart
         role = "gated" if gated else "shown, not gated"
         first = ("scene", "engine") if apart else ("scene\nengine",)
-        after = ("most of\na limit", *self.after_heads)
+        after = ("error /\nlimit", *self.after_heads)
         table = grid(
             ("", *first, *(f"{head}:" for head in (*heads, *before)), *after, HALVED),
             title=f"{self.title}profile {profile} ({role})",
@@ -75,21 +75,26 @@ class CellTable:
             least={first[0]: self.names} | ({HALVED: 15} if apart else {}),
         )
         table.columns[-1].max_width = None if apart else 14
+        shares = []
         for one in sorted(chosen, key=lambda one: one.verdict == "within"):
             names = (one.cell.scene.name, one.cell.engine)
             *numbers, share, seen = row_cells(one, heads, self.numbers, forces=self.forces)
             more = self.before(one)[: len(before)]
+            shares.append(str(share))
             table.add_row(
                 mark(one),
                 *(names if apart else ["\n".join(names)]),
                 *(*numbers, *more, share, *self.after(one), seen),
             )
+        table.caption = Text(_words_of_rules(shares), "dim")
+        table.caption_justify = "left"
         return table
 
 
 MARKS = {
     "within": Text("ok", "green"),
     "out": Text("OUT", "bold red"),
+    "known": Text("known", "yellow"),
     "unsupported": Text("NONE", "bold red"),
 }
 SHORT = {each.id: each.short for entry in QUANTITIES.values() for each in entry.criteria}
@@ -132,26 +137,27 @@ def _number(error: Error | None) -> str:
 
 
 def _share(findings: Sequence[Finding]) -> Text:
-    shares = [
-        (finding.number / finding.limit, SHORT[finding.rule])
-        for finding in findings
-        if finding.rule in SHORT and finding.number is not None and finding.limit
-    ]
-    if not shares:
+    own = [each for each in findings if each.rule in SHORT and not math.isnan(each.taken)]
+    if not own:
         return Text("")
-    share, name = max(shares, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
-    if math.isnan(share):
-        return Text("nan", "red")
-    size = f"{share:.0%}" if share < 10 else f"x{share:.0f}" if share < 1e4 else f"x{share:.0e}"
+    worst = max(own, key=lambda finding: finding.taken)
+    share, name = worst.taken, SHORT[worst.rule]
     style = "red" if share > 1 else "yellow" if share > 0.5 else ""
-    return Text(f"{size} {name}", style)
+    return Text(f"{readable(share, 2)} {name}", style)
+
+
+def _words_of_rules(shares: Iterable[str]) -> str:
+    """Return the meaning of the short names of rules behind such shares of a limit."""
+    named = dict.fromkeys(share.rpartition(" ")[2] for share in shares)
+    told = [f"{SHORT[rule]} {RULES[rule].title}" for rule in SHORT if SHORT[rule] in named]
+    return f"error / limit: {'; '.join(told)}" if told else ""
 
 
 UNITS, LINK_UNITS, OF_FORCES, MORE_UNITS, MORE_STEPS, NOTES, STEPS = range(7)
 """Places of parts: units and steps of cells, with those of free motion between."""
 OF_FORCES_WORDS = (
-    "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
-    "torque over the run."
+    "Forces against kinetostatics at their own instants; F largest reaction, M largest torque over "
+    "the run."
 )
 
 
@@ -200,7 +206,7 @@ FORCE_TABLE = CellTable(
 
 def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
     """Print the whole verification."""
-    failed = [one for one in checked if one.cell.gated and one.verdict != "within"]
+    failed = [one for one in checked if one.cell.gated and one.verdict not in ("within", "known")]
     _failures(console, failed)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
@@ -211,7 +217,10 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
         if loaded:
             console.print(FORCE_TABLE.shown(profile, gated, loaded, console.width), "")
     _advice(console, checked)
-    console.print(_summary(checked, failed))
+    for one in checked:
+        if text := one.known_text:
+            hanging(console, f"{one.cell.label}: ", text, style="yellow")
+    console.print(summary(checked))
     console.print(footer(checked, facts), style="dim", highlight=False)
 
 
@@ -256,16 +265,20 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
         console.print()
 
 
-def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
+def summary(checked: Sequence[Checked]) -> Text:
+    """Return the verdict on all gated cells, in a line."""
     gated = [one for one in checked if one.cell.gated]
+    failed = [one for one in gated if one.verdict not in ("within", "known")]
     scenes = len({one.cell.scene.name for one in gated})
     engines = len({one.cell.engine for one in gated})
     counted = f"{count(scenes, 'scene')} x {count(engines, 'engine')}"
     what = f"{count(len(gated), 'cell')} ({counted})"
     if failed:
         return Text(f"OUT OF TOLERANCE: {len(failed)} of {what}", "bold red")
-    every = "all " if len(gated) > 1 else ""
-    return Text(f"WITHIN TOLERANCE: {every}{what}", "bold green")
+    known = sum(one.verdict == "known" for one in gated)
+    every = f"{len(gated) - known} of " if known else "all " if len(gated) > 1 else ""
+    more = f"; {count(known, 'known failure')}" if known else ""
+    return Text(f"WITHIN TOLERANCE: {every}{what}{more}", "bold green")
 
 
 def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
@@ -289,6 +302,8 @@ def _case(one: Checked) -> Element:
         remark(case, "skipped", message=f"shown, not gated: {head}")
     elif one.verdict == "unsupported":
         remark(case, "error", text, message=head, type="unsupported")
+    elif one.is_known:
+        remark(case, "skipped", message=one.known_text)
     elif one.failures:
         remark(case, "failure", text, message=head, type=one.failures[0].rule)
     if one.advice:
@@ -297,7 +312,5 @@ def _case(one: Checked) -> Element:
 
 
 def _line(finding: Finding) -> str:
-    rule = RULES[finding.rule]
-    return f"{rule.id} {rule.title}: {finding.text}" + (
-        f"\n  cure: {finding.cure}" if finding.cure else ""
-    )
+    ((rule, text),) = titled([finding])
+    return f"{rule} {text}" + f"\n  cure: {finding.cure}" * bool(finding.cure)

@@ -46,9 +46,7 @@ AS_SHIPPED = Profile(
         "integrator": Setting(
             "GeneralizedAlpha", "default: joints closed in their places (index 3)"
         ),
-        "spectral_radius": Setting(
-            0.9, "default: damps what is faster than the step by 10 % in it"
-        ),
+        "spectral_radius": Setting(0.9, "default: damps motion faster than the step by 10 % in it"),
         "free_spectral_radius": Setting(
             0.9, "of the drive `free`, in place of the other: default, as of the other"
         ),
@@ -57,16 +55,16 @@ AS_SHIPPED = Profile(
         "absolute_tolerance": Setting(1e-10, "default: of the residual"),
         "beam_rounding": Setting(
             0.0,
-            "of beams: the least absolute tolerance, over what rounding leaves of their forces",
+            "for beams: the least absolute tolerance, over the rounding of their forces",
             of_beams=True,
         ),
         "iterations": Setting(25, "default: the most that Newton's method may take"),
         "jacobian": Setting("as-needed", "default: useModifiedNewton, updated where it is slow"),
         "adaptive_step": Setting(
             "enable",
-            "default: a step that fails is cut; to end at each sample all the same exudyn is asked "
-            "for its steps one by one, and works out Newton's matrix anew in each, which takes a "
-            "third less time than a simulation in one go",
+            "default: a step that fails is cut; to end at each sample all the same exudyn is "
+            "called step by step, and computes Newton's matrix anew in each, which takes a third "
+            "less time than a simulation in one go",
         ),
         "linear_solver": Setting("EXUdense", "default"),
         "ignore_singular": Setting("disable", "default: joints that are redundant end the run"),
@@ -76,21 +74,21 @@ AS_SHIPPED = Profile(
 TUNED = Profile(
     "tuned",
     "exudyn",
-    "What a start shakes damped at once, Newton's matrix at each step, redundant joints taken",
+    "Vibration of the start damped at once, Newton's matrix at each step, redundant joints allowed",
     dict(AS_SHIPPED.settings)
     | {
         "spectral_radius": Setting(
             0.4,
-            "at the start accelerations are off by a part of what they change by in a step, which "
-            "0.9 leaves to ring for 60 steps and 0.4 for 5; of 0 to 0.9 it has the least of it "
-            "over all shipped scenes, and 0 has 2.6 times the error of velocities",
+            "at the start accelerations are off by a part of their change in a step, which rings "
+            "for 60 steps with 0.9 and for 5 with 0.4; 0.4 rings least over all shipped scenes, "
+            "and 0 has 2.6 times the error of velocities",
         ),
         "free_spectral_radius": Setting(
             0.9,
-            "of the drive `free`: its start has the accelerations of what acts, so nothing rings, "
-            "and what is damped is the motion itself: in 10 s of fourbar-swing, steps of 1 ms, "
-            "0.4 loses 20 times the energy that 0.9 loses, and is off by 1.8 times as much over "
-            "what its start can tell; 1 diverges",
+            "with the drive `free`: the start has the right accelerations, so nothing rings, and "
+            "damping would take from the motion itself: in 10 s of fourbar-swing, steps of 1 ms, "
+            "0.4 loses 20 times the energy that 0.9 loses, and has 1.8 times the error over its "
+            "sensitivity; 1 diverges",
         ),
         "residual": Setting(
             BY_NEED,
@@ -103,16 +101,16 @@ TUNED = Profile(
         ),
         "beam_rounding": Setting(
             16.0,
-            "of beams: no residual falls below what rounding leaves of their axial force; asked "
-            "for less, steps fail and are cut, which excites what vibrates: of fourbar-elastic "
-            "with 8 elements the deflection is 0.08 % off at 720 steps a turn, and 0.02 % with "
-            "this; finer runs and those of 16 elements break down",
+            "for beams: no residual falls below the rounding of their axial force; with a lower "
+            "tolerance steps fail and are cut, which excites vibration: of fourbar-elastic with 8 "
+            "elements the deflection is 0.08 % off at 720 steps a turn, and 0.02 % with this; "
+            "finer runs and those of 16 elements break down",
             of_beams=True,
         ),
         "jacobian": Setting(
             "each-step",
-            "as it is anyway where steps are asked for one by one; in one go a step takes 3 "
-            "iterations instead of 8, for a matrix, and two thirds of the time",
+            "as with single steps anyway; in one go a step takes 3 iterations instead of 8, for a "
+            "matrix, and two thirds of the time",
         ),
         "linear_solver": Setting(
             BY_NEED,

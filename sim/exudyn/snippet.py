@@ -79,8 +79,9 @@ def _alone(lines: list[str], complete: Settings, defaults: Settings) -> list[str
     if by_need:
         notes.append(
             f"Where joints are redundant: {linear}.solverType = exu.LinearSolverType.EigenDense "
-            "and ignoreSingularJacobian = True; elsewhere a singular matrix is a fault to be told "
-            f"of. Of more than {MOST_DENSE} coordinates and constraints EigenSparse is faster."
+            "and ignoreSingularJacobian = True; elsewhere a singular matrix is a fault to be "
+            f"reported. Of more than {MOST_DENSE} coordinates and constraints EigenSparse is "
+            "faster."
         )
     if complete["residual"] == BY_NEED:
         notes.append(

@@ -69,7 +69,7 @@ AS_SHIPPED = Profile(
         "flywheel_ratio": Setting(options.FLYWHEEL_RATIO, "the drive, not an engine default"),
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
         "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),
-        "free_timeconst_steps": Setting(0.0, "not used: let go, loops close as they do driven"),
+        "free_timeconst_steps": Setting(0.0, "not used: free loops close as driven ones"),
         "free_inverse_weight_share": Setting(1.0, "default: mjModel.body_invweight0 as compiled"),
     },
 )
@@ -108,13 +108,13 @@ TUNED = Profile(
         ),
         "free_timeconst_steps": Setting(
             FREE_STEPS,
-            "takes the place of solref_timeconst_steps of what is let go: loops that do not give "
-            "way need hardly be drawn back, and a gentle spring takes less from the energy",
+            "replaces solref_timeconst_steps in free motion: loops that do not give way need "
+            "hardly be drawn back, and a gentle spring takes less from the energy",
         ),
         "free_inverse_weight_share": Setting(
             FREE_WEIGHT_SHARE,
-            "of what is let go, body_invweight0 times this once compiled: how far loops give way "
-            "goes with it, and solimp alone can not lower it under 0.01 %; no MJCF says it",
+            "in free motion body_invweight0 times this once compiled: the give of loops follows "
+            "it, and solimp alone can not lower it under 0.01 %; MJCF has no word for it",
         ),
         "islands": Setting("disable", "one system of loops: 7 % faster, same numbers"),
         "contact": Setting("disable", "nothing touches: 15 % faster, same numbers"),

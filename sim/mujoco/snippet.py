@@ -96,7 +96,7 @@ def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
     """Say how to scale the step for another crank speed, or for free motion."""
     number = stepping.substeps
     how = {
-        "nothing": f"Let go: timestep = {stepping.dt_s:g} s",
+        "nothing": f"Free motion: timestep = {stepping.dt_s:g} s",
         "turns": stepping.scaled_by_speed("timestep"),
         "frames": f"A frame of {stepping.frame} is {number} of these steps: mj_step(model, data, "
         f"nstep={number}). {stepping.scaled_in_frames('them')}: timestep = frame / their number",

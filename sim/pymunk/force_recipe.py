@@ -54,7 +54,7 @@ def _check_covered(scene: Scene) -> None:
     tables = {"loads": scene.loads, "springs": scene.springs, "friction": scene.friction}
     extra = [f"{table}.{name}" for table, named in tables.items() for name in named]
     if scene.is_free:
-        extra.append("a driver that is let go")
+        extra.append("a driver in free motion")
     elif not scene.driver.is_crank:
         extra.append("a driver that is no crank")
     elif not isinstance(scene.driver.law, laws.ConstantSpeed):

@@ -48,10 +48,10 @@ TUNED = Profile(
         ),
         "free_paths": Setting(
             "arcs",
-            "let go, pins are closed for the arcs that their points go (see sim.pymunk.arcs): of a "
-            "four-bar that whirls through its limits for 10 s at 1 ms the place at the same crank "
-            "angle is off by 3e-5 in place of 1e-3, the energy drifts by 4e-5 in place of 7e-3; "
-            "not in chains of segments",
+            "in free motion pins are closed for the arcs of their points (see sim.pymunk.arcs): of "
+            "a four-bar that whirls through its limits for 10 s at 1 ms the place at the same "
+            "crank angle is off by 3e-5 in place of 1e-3, the energy drifts by 4e-5 in place of "
+            "7e-3; not in chains of segments",
         ),
     },
 )

@@ -34,7 +34,7 @@ TUNED = Profile(
             "none as rough as rounded positions; chosen with the other two on the shaper with its "
             "heavy ram, tried on a four-bar with a rocker 1000 times as heavy, and at 100 rad/s",
         ),
-        "free_velocity_sweeps": Setting(0, "each costs energy: a hundred times what is lost now"),
+        "free_velocity_sweeps": Setting(0, "each costs energy: a hundred times the present loss"),
     },
 )
 checked = checker(

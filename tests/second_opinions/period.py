@@ -41,7 +41,7 @@ class Period:
 
 
 def period(scene: Scene) -> Period:
-    """The period of a scene that is let go under weights and springs alone, that passes no limit of
+    """The period of a scene that is free under weights and springs alone, that passes no limit of
     its driver, and that does not rest.
 
     Good to about 1e-13 of itself, over the share of the energy that is left at the top where it

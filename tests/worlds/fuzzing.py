@@ -24,7 +24,7 @@ from sim.engine import Status
 ACTING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 """What a terminal obeys, or what turns the order of its letters round."""
 UNSEEN = re.compile(ACTING.pattern[:-1] + "\u00ad\u061c\u200b-\u200f\u2060\ufeff]")
-"""These, and what only hides: in a message about a name, nobody would see what is wrong with it."""
+"""These, and what only hides: in a message about a name, nobody would see fault with it."""
 MESSAGE = re.compile(r"^crankcheck: \S.*[:,;] \S", re.DOTALL)
 LONGEST = 20_000
 """Characters of a message; a user reads a few lines."""
@@ -82,7 +82,7 @@ QUICK = (
 
 
 def fitting(raw: bytes, command: str) -> str:
-    """The command, or one for a moment in its place where a shipped mechanism is let go, which may
+    """The command, or one for a moment in its place where a shipped mechanism is free, which may
     take its time for all of its motion."""
     is_free, works = b'"free"' in raw, command.startswith(("solve", "view"))
     return MOMENT if is_free and works else command

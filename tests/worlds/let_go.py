@@ -1,4 +1,4 @@
-"""A scene that is let go with everything that may act on one, and how what is let go starts."""
+"""A scene that is free with everything that may act on one, and how what is free starts."""
 
 import numpy as np
 

@@ -262,7 +262,7 @@ UNIT = {"time": "s", "angle": "deg", "omega": "rad_s", "speed": "m_s", "displace
 
 @st.composite
 def free_mechanisms(draw: st.DrawFn) -> Tree:
-    """The tables of a mechanism that is let go for a moment."""
+    """The tables of a mechanism that is in free motion for a moment."""
     tree = draw(mechanisms())
     driver: Tree = {"link": "crank", "law": "free", "start_deg": draw(between(-180.0, 180.0))}
     driver["duration_s"] = draw(between(0.01, 0.05))

@@ -77,7 +77,7 @@ class Meddled:
 
 
 def meddled(sound: Engine, opens: Opens = lambda asked: asked, **faults: Any) -> Engine:
-    """An engine that opens something else than was asked for, or whose sessions have faults."""
+    """An engine that opens something else than was requested, or whose sessions have faults."""
 
     def opened(*given: Any) -> Meddled:
         asked = Asked(*given)
@@ -139,12 +139,12 @@ def _boundless(sound: Engine) -> Engine:
 
 
 def _told_settings(asked: Asked, facts: Facts) -> Facts:
-    """They are said to be what was asked for."""
+    """They are said to be the requested engine."""
     return replace(facts, settings={**facts.settings, **asked.settings})
 
 
 def _deaf(sound: Engine) -> Engine:
-    """It runs as it always does, and says that it has what was asked for."""
+    """It runs as it always does, and says that it has the requested engine."""
 
     def deaf(asked: Asked) -> Asked:
         sound.check(asked.settings)

@@ -90,21 +90,21 @@ class SignedScene:
         """Take a scene. Raises StructureError for another driver, and for other groups."""
         if not scene.driver.is_crank:
             raise StructureError(
-                f"{scene.name}: circuits were asked for, and {scene.driver.joint} drives; they are "
-                "found of a scene whose driver is a link pinned to the ground"
+                f"{scene.name}: circuits need a driver that is a link pinned to the ground, and "
+                f"{scene.driver.joint} drives"
             )
         structure = analyse(scene)
         if structure.triads or structure.redundant:
             odd = [*(t.central for t in structure.triads), *(b.link for b in structure.redundant)]
             raise StructureError(
-                f"{scene.name}: circuits were asked for, and {', '.join(odd)} is of no dyad (a "
-                "triad's central link, or a redundant one); they are found of class II mechanisms"
+                f"{scene.name}: circuits are found for class II mechanisms, and {', '.join(odd)} "
+                "is of no dyad (a triad's central link, or a redundant one)"
             )
         dyads = tuple(g.branch_key for g in structure.groups if g.assemblies == 2)
         if len(dyads) > MOST:
             raise StructureError(
-                f"{scene.name}: circuits were asked for of {len(dyads)} dyads with two assemblies "
-                f"each; they are found of up to {MOST}"
+                f"{scene.name}: found {len(dyads)} dyads with two assemblies each; circuits are "
+                f"found for up to {MOST}"
             )
         return SignedScene(scene, dyads)
 

@@ -93,8 +93,8 @@ class Circuits:
         same = [a.range_rad for c in self.circuits for a in c if a.signs == position.signs]
         spans = " and ".join(f"{math.degrees(a):.6g} to {math.degrees(b):.6g}" for a, b in same)
         raise CrankcheckError(
-            f"{name}: the position {at:.6g} deg with the signs {text or 'none'} was asked for, and "
-            f"can not be assembled; with these signs it can at {spans or 'no angle'} deg"
+            f"{name}: the position {at:.6g} deg with the signs {text or 'none'} can not be "
+            f"assembled; these signs can at {spans or 'no angle'} deg"
         )
 
     def defect(self, positions: Sequence[Position]) -> Defect:
@@ -150,8 +150,8 @@ def _beyond(signed: SignedScene, every: list[Arc], arc: Arc, end: ArcEnd, *, upp
     if best > SAME:
         raise CrankcheckError(
             f"{signed.scene.name}: the limit position of the driver at "
-            f"{math.degrees(end.angle_rad):.6g} deg (dyad {end.dyad}) can not be told from a "
-            "change point; change a length by more than rounding"
+            f"{math.degrees(end.angle_rad):.6g} deg (dyad {end.dyad}) can not be distinguished "
+            "from a change point; change a length by more than rounding"
         )
     return where
 

@@ -309,7 +309,7 @@ def resolved(solution: PeriodicSolution, wanted: WantedSpeed) -> PeriodicSolutio
         solution = repeated(machine, cells, solution.flywheel, solution, wanted)
     where = machine.theta(solution.cells.borders[np.argmax(solution.roughness)])
     raise CrankcheckError(
-        f"{machine.scene.name}: no steady cycle is told: near {machine.scene.driver.link} "
+        f"{machine.scene.name}: no steady cycle is found: near {machine.scene.driver.link} "
         f"{np.degrees(where) % 360.0:.4g} deg torques change too fast for {MOST_CELLS} cells of a "
         "cycle; give loads of longer waves, or a motor that is less steep over the speed"
     )

@@ -122,7 +122,7 @@ def _asked(positions: tuple[PrecisionPosition, ...], name: str) -> tuple[float, 
     slides = [a.displacement for a in every if isinstance(a, AskedSlide) and a.slider == name]
     angles = [a.angle for a in every if isinstance(a, AskedAngle) and a.link == name]
     if len(slides) + len(angles) != len(positions):
-        raise CrankcheckError(f"nothing is asked of {name} in a position, which it turns back in")
+        raise CrankcheckError(f"no position is requested of {name} at its limits")
     way = slides[1] - slides[0] if slides else math.remainder(angles[1] - angles[0], math.tau)
     forth = (positions[1].driver_rad - positions[0].driver_rad) % math.tau
     back = math.tau - forth
@@ -220,7 +220,7 @@ def _solved(task: TaskTable, progress: Progress | None, *, few: bool = False) ->
             progress(PROPOSED + (1.0 - PROPOSED) * number / (1 + len(proposals)), math.inf)
     if not examined:
         why = f": {refused[0]}" if refused else ""
-        raise CrankcheckError(f"{task.name}: no mechanism does it{why}")
+        raise CrankcheckError(f"{task.name}: no mechanism solves the task{why}")
     named = [_named(one, task, number) for number, one in enumerate(ranked(examined), 1)]
     return Solutions(task, tuple(named), looked, tuple(refused))
 

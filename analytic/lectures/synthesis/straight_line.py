@@ -166,14 +166,14 @@ def hoeken(
     """
     if share is not None and deviation is not None:
         raise CrankcheckError(
-            f"Hoeken's linkage was asked for with a share of {share:g} of the turn and a deviation "
+            f"Hoeken's linkage was requested with a share of {share:g} of the turn and a deviation "
             f"of {deviation:g}, which follow from each other; give one of them"
         )
     refuse_none(length_m, 1.0 if deviation is None else deviation)
     own = MOST_SHARE if share is None else share
     if not LEAST_SHARE <= own <= MOST_SHARE:
         raise CrankcheckError(
-            f"Hoeken's straight part was asked for over {own:g} of the crank's turn; ask for "
+            f"Hoeken's straight part was requested over {own:g} of the crank's turn; ask for "
             f"{LEAST_SHARE:g} to {MOST_SHARE:g}"
         )
     if deviation is not None:
@@ -216,7 +216,7 @@ def _share_of(deviation: float, even: Even) -> float:
         return high
     if not keeps(low):
         raise CrankcheckError(
-            f"a deviation of {deviation:.3g} of the length was asked for; Hoeken's linkage keeps "
+            f"a deviation of {deviation:.3g} of the length was requested; Hoeken's linkage keeps "
             f"it over less than {LEAST_SHARE:g} of the crank's turn; ask for more"
         )
     while high - low > 1e-4:

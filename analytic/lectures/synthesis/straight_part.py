@@ -119,7 +119,7 @@ def longest(four_bar: CouplerCurve, centre_rad: float, deviation: float) -> Stra
         bad = half
     if good == 0.0:
         raise CrankcheckError(
-            f"a straight part with a deviation of {deviation:.3g} of its length was asked for; ask "
+            f"a straight part with a deviation of {deviation:.3g} of its length was requested; ask "
             "for more, or for another linkage"
         )
     for _ in range(HALVINGS):
@@ -194,11 +194,11 @@ class StraightLinkage:
 def refuse_none(length_m: float, deviation: float) -> None:
     if not (math.isfinite(length_m) and length_m > 0.0):
         raise CrankcheckError(
-            f"a straight part of {length_m:g} m was asked for; give more than 0 m"
+            f"a straight part of {length_m:g} m was requested; give more than 0 m"
         )
     if not (math.isfinite(deviation) and deviation > 0.0):
         raise CrankcheckError(
-            f"a deviation of {deviation:g} of the length was asked for; give more than 0 (only "
+            f"a deviation of {deviation:g} of the length was requested; give more than 0 (only "
             "exact linkages have none)"
         )
 

@@ -221,7 +221,7 @@ def _unchanged(scene: Scene, body: str) -> str:
     if body in scene.elastic:
         return "it is elastic, and its own mass is that of the beam"
     if body == scene.driver.link:
-        return "its speed is told, whatever its inertia"
+        return "its speed is given, whatever its inertia"
     if body in scene.links or body in scene.sliders:
         return "it has no mass"
     return "no link or slider of that name"

@@ -251,8 +251,8 @@ def check_vibrates(scene: Scene) -> None:
             "scene that has (crankcheck scenes)"
         )
     if type(scene.driver.law) is not ConstantSpeed:  # a controlled driver gives way
-        found = "it is let go" if scene.is_free else "its driver follows another law"
+        found = "it is in free motion" if scene.is_free else "its driver follows another law"
         raise CrankcheckError(
-            f"{scene.name}: vibration is told of a driver at constant speed; found that {found}: "
-            'use [driver] law = "constant", with speed_rad_s'
+            f"{scene.name}: vibration needs a driver at constant speed; found that {found}: use "
+            '[driver] law = "constant", with speed_rad_s'
         )

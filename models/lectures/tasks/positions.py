@@ -47,7 +47,7 @@ class PositionsTask(TaskTable):
         kinds = {tuple(sorted(one.points)) for one in self.positions}
         if len(kinds) > 1:
             told = " and ".join(", ".join(names) or "point_m and angle_deg" for names in kinds)
-            raise ValueError(f"positions: found {told}; give all in the same way, of one body")
+            raise ValueError(f"positions: found {told}; give all in the same form, of one body")
         taken = [name for name in self.names if name in RESERVED]
         if taken:
             raise ValueError(

@@ -209,7 +209,7 @@ DIFFERENCED = 1e-9
 SURE = 1e-3
 """Part of an error that counts as left by a common step: repeated readings may look held."""
 WHOLE, MOST_STEPS = 0.02, 1e6
-"""Largest distance of a number of steps a turn from a whole number, and the most that are told."""
+"""Largest distance of a number of steps a turn from a whole number, and the most that are named."""
 
 
 def _binary(numbers: Array, kind: type[np.floating[Any]], lost: Array, written: float) -> float:

@@ -28,7 +28,7 @@ SMOOTH = 1e-3
 @clause(
     "EC11",
     "profiles as-shipped and tuned are complete, and say why",
-    "A setting that is not told can not be repeated, nor compared with another's.",
+    "A setting that is not reported can not be repeated, nor compared.",
     "Give every profile all settings that influence accuracy, each as Setting(value, reason) "
     "with an int, a float or a str.",
     of_scenes=False,
@@ -74,7 +74,7 @@ def _version(subject: Subject) -> Iterator[str]:
 @clause(
     "EC13",
     "a wrong setting is refused with SettingError",
-    "A value that an engine passes over is taken for one that it has.",
+    "A value that an engine ignores is taken for one that it uses.",
     "In check, call check_ranges for the numbers and check_choices for the words.",
     of_scenes=False,
 )
@@ -126,10 +126,10 @@ def _refused_at_open(subject: Subject, settings: dict[str, SettingValue]) -> boo
 
 @clause(
     "EC14",
-    "the settings told back are those asked for, and profiles that differ run otherwise",
-    "A setting that did not arrive makes two results of one, or one of two.",
-    "Read Facts.settings from the engine itself, and see that open hands each of them on; "
-    "where it holds something else than was asked, say so in Engine.holds.",
+    "the reported settings are the requested ones, and profiles that differ run differently",
+    "A lost setting gives one result two names, or two results one.",
+    "Read Facts.settings from the engine itself, and check that open hands on each of them; where "
+    "it holds another value than requested, say so in Engine.holds.",
 )
 def _told_back(subject: Subject) -> Iterator[str]:
     for name in subject.engine.profiles:
@@ -168,7 +168,7 @@ def _same(held: object, asked: SettingValue, rounding: float) -> bool:
 
 @clause(
     "EC15",
-    "numbers have the digits that `precision` says",
+    "numbers have the digits that `precision` states",
     "Limits for fewer digits hide faults, and those for more find one in every number.",
     "Set Engine.precision: single where the engine's own numbers have 24 bits, else double.",
     of_scenes=False,

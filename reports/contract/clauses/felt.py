@@ -32,8 +32,8 @@ CENTRE = "centre of mass"
 
 @clause(
     "EC85",
-    "loads are felt as the scene has them, where they are said to be applied",
-    "A load that is left out, or late, or in another frame, is another machine.",
+    "loads act as the scene has them, where applies_loads is True",
+    "A load left out, late, or in another frame makes another machine.",
     "Apply each load of scene.loads at every step, at its point, in its frame, as large as "
     "load_magnitudes says at the time that forces belong to, in free motion too; or leave "
     "applies_loads False.",
@@ -103,7 +103,7 @@ def _weighed(scene: Scene, pull: float, down_rad: float) -> Scene:
 
 @clause(
     "EC86",
-    "constant friction is felt as the scene has it, where it is said to be applied",
+    "constant friction acts as the scene has it, where applies_constant_friction is True",
     "Friction that pushes along, or on one body alone, is none.",
     "Let it act on both bodies of the joint, against the speed that each has as seen from the "
     "other; or leave applies_constant_friction False.",
@@ -179,7 +179,7 @@ def _unfelt(subject: Subject, plain: Forces, changed: Scene, share: float) -> It
         if np.isfinite(each).any()
     }
     if not off:
-        yield "no force is told"
+        yield "no force is reported"
         return
     worst = max(off, key=lambda name: off[name])
     if not off[worst] <= OFF:

@@ -52,7 +52,7 @@ SPEED_OFF = 0.02
 
 @clause(
     "EC91",
-    "springs are told back as the scene has them, where they are said to be applied",
+    "springs are reported as the scene has them, where applies_springs is True",
     "A spring that is not there, or another, is another machine; run refuses it.",
     "Give Facts.springs: rate, damping and free length or angle of each spring of "
     "scene.springs, as the engine holds them; or leave applies_springs False.",
@@ -73,7 +73,7 @@ def _held(subject: Subject) -> Iterator[str]:
 @clause(
     "EC92",
     "springs pull as their rate, damping, free length and ends say, where they are applied",
-    "What springs hold swings at a pace, dies away and comes to rest by these alone.",
+    "These alone determine frequency, decay and rest of a mechanism on springs.",
     "Pull q back with rate (q - free) + damping q': q the distance of two points (line_ends "
     "says where on which bodies), the angle of a pin's second body against the first with its "
     "whole turns, or the displacement of a slider; alike on both bodies.",
@@ -118,8 +118,8 @@ def _each_spring(
 
 @clause(
     "EC93",
-    "what is free keeps its energy for a period, but for what shrinks with the step",
-    "What an engine adds or takes looks like a motor or a brake that the scene has not.",
+    "free motion keeps its energy for a period, up to an error that shrinks with the step",
+    "Energy that an engine adds or takes acts like a motor or a brake that the scene has not.",
     "Look for damping that is left on, for joints whose correction moves bodies, and for "
     "positions that are moved with velocities of another instant; or refuse drive free.",
 )

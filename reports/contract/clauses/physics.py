@@ -51,7 +51,7 @@ PAIR_OFF = 0.01
 @clause(
     "EC51",
     "a prescribed crank is where the driver's law has it",
-    "What the crank is off by, all links are off by; a motor of limited gain is a servo.",
+    "An error of the crank is an error of all links; a motor of limited gain is a servo.",
     "Move the crank yourself: drive.angles, drive.chords and drive.pushes say where to and "
     "how fast; or refuse the drive with EngineError.",
 )
@@ -86,8 +86,8 @@ def _drive_fault(subject: Subject, turns: float) -> str:
     "EC52",
     "errors of place shrink with the step, at the order that is declared, down to a floor",
     "verify takes an error for a fault of the step or of the model by this order.",
-    "Set Engine.order to what is measured; where order 1 is not meant, look for places that "
-    "are moved with the velocity of another instant.",
+    "Set Engine.order to the measured order; if order 1 is not meant, look for places moved with "
+    "the velocity of another instant.",
 )
 def _shrinking(subject: Subject) -> Iterator[str]:
     if subject.engine.placing(subject.settings()) == "solved":
@@ -125,8 +125,8 @@ def _worst_place(subject: Subject, steps: int) -> tuple[Error | None, str]:
 
 @clause(
     "EC53",
-    "places come about as `placing` says",
-    "Places that are nearer to the reference than steps can bring them were taken from it.",
+    "places are found as `placing` states",
+    "Places nearer to the reference than steps allow were taken from it.",
     "Let Engine.placing give solved where joints are solved for in each step; raise "
     "Engine.order where errors shrink faster than it says.",
 )
@@ -153,7 +153,7 @@ def _placing(subject: Subject) -> Iterator[str]:
     "EC54",
     "errors depend on the steps in a turn, not on the speed or its sign",
     "Advice for one speed is carried over to others.",
-    "Name what is a time of its own, such as a damping, in Engine.in_seconds.",
+    "Name settings that are times of their own, such as a damping, in Engine.in_seconds.",
 )
 def _speed(subject: Subject) -> Iterator[str]:
     law = subject.scene.driver.law
@@ -194,8 +194,8 @@ def unlike(
 
 @clause(
     "EC55",
-    "what is free moves as its masses, its speeds and gravity have it",
-    "A mechanism that nothing drives, and that falls otherwise, is not the scene.",
+    "free motion follows masses, speeds and gravity",
+    "A free mechanism that falls differently is not the scene.",
     "Set the engine's gravity to scene.gravity_m_s2, for every body, give each its own mass "
     "and inertia, and take no speed away; or refuse drive free with EngineError.",
 )

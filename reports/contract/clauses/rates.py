@@ -54,7 +54,7 @@ class _Rate:
 
 @clause(
     "EC41",
-    "velocities belong to the instant that the facts say, and to the places",
+    "velocities belong to the instant that the facts state, and to the places",
     "Half a step of an angle's acceleration is more than most errors of velocity.",
     "Set Facts.velocity_shift (in steps) and Poses.lag_s (velocity_shift * dt_s): -0.5 where "
     "velocities are stepped before places, 0.5 where after them, 0 where both are of one "
@@ -72,8 +72,8 @@ def _velocities(subject: Subject) -> Iterator[str]:
 
 @clause(
     "EC42",
-    "accelerations are reported as declared, and belong to the instant that the facts say",
-    "What an engine has not is no zero, and what it had a step ago is not what it has.",
+    "accelerations are reported as declared, and belong to the instant that the facts state",
+    "A missing acceleration is not zero, and that of a step ago is not the present one.",
     "Give NaN for all where there are none, with reports_accelerations=False; else set "
     "Facts.acceleration_shift.",
 )

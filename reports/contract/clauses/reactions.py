@@ -73,7 +73,7 @@ def _same_when_free(subject: Subject) -> Iterator[str]:
 @clause(
     "EC82",
     "every pin and slider has its forces, as declared, and those of a pin add up to nothing",
-    "What is missing or doubled is taken for a force of 0, or for another joint's.",
+    "A missing or doubled force is taken for 0, or for that of another joint.",
     "Give Forces.pins as joined_at(scene) names them, each force that of the pin on the body, "
     "in the ground's frame; NaN for those that Engine.unreported names, and at the start where "
     "forces_of is steps.",
@@ -107,7 +107,7 @@ def _declared(subject: Subject) -> Iterator[str]:
             missing = first + int(np.argmin(there[first:]))
             yield f"the {name} is not finite at sample {missing}, and not unreported"
         elif there[:first].any():
-            yield f"forces_of is steps, and the {name} is told before the first of them"
+            yield f"forces_of is steps, and the {name} is reported before the first of them"
     closed = max(CLOSED, rounding_of(subject.engine.precision))
     for point, by_body in forces.pins.items():
         total = np.abs(sum(by_body.values(), np.zeros(2))).max(axis=1)[first:]
@@ -157,7 +157,7 @@ def _equilibrium(subject: Subject) -> Iterator[str]:
     forces = subject.in_scene(scene).acting(STEPS).stretch(slice(START, None))
     size = largest(forces)
     if not size > 0.0:
-        yield f"no force is told, or all are 0, in {scene.name} with a pull on its masses"
+        yield f"no force is reported, or all are 0, in {scene.name} with a pull on its masses"
         return
     motion = solve(scene, forces.time_s, bound=False)
     for body in (*scene.links, *(block_name(s) for s in scene.sliders.values() if not s.link)):
@@ -248,7 +248,7 @@ def _matter(scene: Scene, body: str) -> tuple[float, float]:
 
 @clause(
     "EC84",
-    "forces belong to the instants that they say",
+    "forces belong to the instants that they state",
     "Half a step is most of the error of a force.",
     "Set Forces.time_s to when they act: an impulse over a step to its middle or, where "
     "velocities are stepped with new places, its end.",

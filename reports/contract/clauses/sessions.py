@@ -20,7 +20,7 @@ TURNS = 2.2
 @clause(
     "EC31",
     "step, record and read come to the same state",
-    "Errors are recorded and times are stepped: both have to be of the same thing.",
+    "Errors come from record and times from step: both have to be of the same motion.",
     "Let record call what step calls, and read give the state as the last sample has it.",
 )
 def _step_and_record(subject: Subject) -> Iterator[str]:
@@ -38,7 +38,8 @@ def _step_and_record(subject: Subject) -> Iterator[str]:
 @clause(
     "EC32",
     "a log holds the current sample and every n-th after it",
-    "Samples are held to the reference at k dt: one too many, or too late, is an error of place.",
+    "Samples are compared with the reference at k dt: one too many, or too late, is an error of "
+    "place.",
     "Log before the first step and after every n-th: steps // every + 1 samples, at start + k dt.",
 )
 def _every_nth(subject: Subject) -> Iterator[str]:
@@ -84,8 +85,8 @@ def _stretches(subject: Subject) -> Iterator[str]:
 
 @clause(
     "EC34",
-    "what was logged does not change afterwards",
-    "Arrays that the session goes on to write to change a result that is already out.",
+    "logged numbers do not change afterwards",
+    "Arrays that the session still writes to change a finished result.",
     "Hand out copies.",
     of_scenes=False,
 )
@@ -123,7 +124,7 @@ def _side_by_side(subject: Subject) -> Iterator[str]:
     "EC36",
     "the same input gives the same numbers, to the last bit",
     "A result that can not be repeated can not be compared.",
-    "Seed what is random, and keep the order of bodies and joints.",
+    "Seed random numbers, and keep the order of bodies and joints.",
 )
 def _twice(subject: Subject) -> Iterator[str]:
     for profile in subject.engine.profiles:

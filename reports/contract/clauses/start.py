@@ -89,9 +89,9 @@ def _crank_off(subject: Subject, bodies: object, time_s: float) -> float:
 
 @clause(
     "EC71",
-    "a scene or a drive that it can not have is refused with EngineError, before the first step",
+    "an unsupported scene or drive is refused with EngineError, before the first step",
     "A refusal is a row with a reason; anything else looks like a fault of the scene.",
-    "Raise EngineError in open, with the words that say what is lacking.",
+    "Raise EngineError in open, and name the missing feature.",
     of_scenes=False,
 )
 def _every_scene(subject: Subject) -> Iterator[str]:

@@ -57,14 +57,11 @@ class StartWithin:
     id = "CC116"
     title = "start"
     explanation = (
-        "An engine may take some samples to take up its pins; its rates may jump meanwhile by "
-        "half a step's acceleration, and no further. Where joints are solved for in each step, "
-        "accelerations may be off by what they change by in a step."
+        "An engine may need some samples to settle its pins; its rates may jump meanwhile by half "
+        "a step's acceleration, and no further. An engine that solves its joints in each step may "
+        "be off in acceleration by the change within a step."
     )
-    cure = (
-        "Start the engine with the velocities of the instant that its own belong to, or shorten "
-        "the step."
-    )
+    cure = "Start the engine with velocities of the instant of its own, or shorten the step."
 
     def check(self, evidence: Evidence) -> Finding | None:
         errors = evidence.errors

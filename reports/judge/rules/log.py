@@ -7,11 +7,11 @@ from reports.judge.rules.rule import Evidence, Finding, Level
 class StatusOk:
     id = "CC101"
     title = "status"
-    explanation = "A run that stopped early, or never started, says nothing about the rest."
+    explanation = "A run that stopped early, or never started, shows nothing about the rest."
     cure = (
-        "What is unsupported says itself what to change; a run that came apart needs a shorter "
-        "step (--steps-per-turn); one that left its branch needs lengths, or a range of the "
-        "driver, away from the singular position that it passes."
+        "An unsupported scene prints what to change; a run that came apart needs a shorter step "
+        "(--steps-per-turn); one that left its branch needs lengths, or a range of the driver, "
+        "away from the singular position that it passes."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -28,11 +28,11 @@ class ValuesFinite:
     title = "finite values"
     explanation = (
         "A NaN or an infinity in a log is a failure, even at one sample, even at the end; so is a "
-        "link, point, slider or pin of the scene that the log says nothing about."
+        "link, point, slider or pin of the scene that is missing from the log."
     )
     cure = (
-        "Shorten the step; look at the engine's warnings for the first bad step; where something "
-        "is missing, look at what the adapter reads."
+        "Shorten the step; look at the engine's warnings for the first bad step; if a body is "
+        "missing, look at the readings of the adapter."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -54,8 +54,8 @@ class LogComplete:
     id = "CC115"
     title = "complete log"
     explanation = (
-        "A run that claims to have ended well has logged every commanded sample, stamped with "
-        "the whole number of steps that it was taken after; what was not logged was not judged."
+        "A run with status ok has logged every commanded sample, stamped with its whole number of "
+        "steps; a sample that was not logged was not judged."
     )
     cure = "Look at how the adapter logs; the time stamps are start + k dt, not a summed clock."
 
@@ -72,10 +72,10 @@ class AsAsked:
     id = "CC117"
     title = "as asked"
     explanation = (
-        "The numbers are those of the engine, settings, drive, step and samples that were asked "
-        "for, and a finer run is a run of its own: else the verdict is that of another cell."
+        "The numbers are those of the requested engine, settings, drive, step and samples, and a "
+        "finer run is a run of its own: otherwise the verdict is that of another cell."
     )
-    cure = "Look at what runs the cells: a stored, renamed or thinned run is no answer."
+    cure = "Look at the program that runs the cells: a stored, renamed or thinned run is no answer."
 
     def check(self, evidence: Evidence) -> Finding | None:
         if evidence.unasked is None:
@@ -84,17 +84,17 @@ class AsAsked:
         faults = [*evidence.unasked, *copied]
         if faults:
             return Finding(self.id, "fail", "; ".join(faults), float(len(faults)), 0.0)
-        return Finding(self.id, "pass", "the runs are those that were asked for")
+        return Finding(self.id, "pass", "the runs are the requested ones")
 
 
 class Required:
     id = "CC119"
     title = "required"
     explanation = (
-        "What a log does not hold is not judged, and no failure; what was required of it has to be "
-        "there."
+        "A quantity that the log lacks is not judged, and no failure; a required one has to be in "
+        "it."
     )
-    cure = "Log what is named, or leave it out of --require."
+    cure = "Log the named quantity or body, or leave it out of --require."
 
     def check(self, evidence: Evidence) -> Finding | None:
         if evidence.absent is None:
@@ -102,7 +102,7 @@ class Required:
         if evidence.absent:
             text = f"not in the log: {'; '.join(evidence.absent)}"
             return Finding(self.id, "fail", text, float(len(evidence.absent)), 0.0)
-        return Finding(self.id, "pass", "all that is required is in the log")
+        return Finding(self.id, "pass", "the log has all that is required")
 
 
 ROUNDING = 1e-9
@@ -113,12 +113,12 @@ class PinsBalance:
     id = "CC124"
     title = "balance of pins"
     explanation = (
-        "A pin has no mass: what it exerts on its bodies adds up to nothing, however the engine "
-        "steps. Where it does not, one of the forces is not the pin's."
+        "A pin has no mass: its forces on its bodies add up to zero, however the engine steps. "
+        "Otherwise one of the forces is not the pin's."
     )
     cure = (
-        "Look at which bodies the adapter adds up; what one body exerts on the other is the "
-        "opposite of what it bears."
+        "Look at which bodies the adapter adds up; the force of one body on the other is the "
+        "opposite of that on itself."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -137,12 +137,13 @@ class NothingContradicts:
     id = "CC126"
     title = "forces as the engine has them"
     explanation = (
-        "Where an engine reports sizes alone, its forces follow from the momentum of its bodies, "
-        "and are held to those sizes: so its solver is judged, and not the arithmetic beside it."
+        "The forces of an engine that reports sizes alone follow from the momentum of its bodies, "
+        "and are compared with those sizes: so its solver is judged, and not the arithmetic beside "
+        "it."
     )
     cure = (
-        "Something acts on the bodies that the balance does not know of, or friction in a joint "
-        "that stands still may be either way: the forces are not to be trusted there."
+        "A load outside the balance acts on the bodies, or friction in a joint at rest may have "
+        "either sign: do not trust the forces there."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

@@ -22,13 +22,13 @@ class TwoComputations:
     id = "CC111"
     title = "two computations"
     explanation = (
-        "Two independent computations never agree over a whole run: an engine that integrates is "
-        "off by what its step leaves out, one that solves its joints rounds its rates in another "
-        "way. Where a body agrees better, the reference has been compared with itself."
+        "Two independent computations never agree over a whole run: an engine that integrates has "
+        "an error of its step, one that solves its joints rounds its rates in another way. A body "
+        "that agrees better shows that the reference was compared with itself."
     )
     cure = (
-        "Look where the adapter takes its numbers from; it must read the engine. One that solves "
-        "its joints in each step declares placing solved."
+        "Look at the source of the adapter's numbers; it must read the engine. One that solves its "
+        "joints in each step declares placing solved."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -48,14 +48,14 @@ class TwoComputations:
             text = "every position equals the reference to the last bit"
             return Finding(self.id, "fail", text, 0.0, 0.0)
         if not found:
-            text = "engine and reference differ by what tells them apart"
+            text = "engine and reference differ as two computations do"
             return Finding(self.id, "pass", text, max(row.pure for row in rows))
         first = found[0]
         bodies = ", ".join(dict.fromkeys(f"{row.body_kind} {row.body}" for row in found))
         why = (
-            f"what is integrated is off by step^{highest_order(errors, order)}"
+            f"integration has an error of step^{highest_order(errors, order)}"
             if placing == "integrated"
-            else "rates are rounded in another way where they are worked out apart"
+            else "separately computed rates round in another way"
         )
         text = (
             f"{bodies}: {first.quantity} is off by {measure(first)} at most"
@@ -72,8 +72,8 @@ class ReferenceCertain:
         "and a limit below it can not be judged."
     )
     cure = (
-        "Keep away from the toggle position, take friction out of a joint that never turns, or "
-        "widen the tolerance that is named."
+        "Keep away from the toggle position, remove friction from a joint that never turns, or "
+        "widen the named tolerance."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -200,16 +200,16 @@ UNSURE = 0.05
 
 class TruthEnds:
     id = "CC134"
-    title = "where the truth ends"
+    title = "where the reference ends"
     explanation = (
-        "What the deflection is off by is of three parts: the engine beside the exact chain of "
-        "segments, that chain beside the beam, and what the beam itself may be off by. Where one "
-        "of the last two is the largest, no engine and no step tells more."
+        "The error of the deflection has three parts: the engine against the exact chain of "
+        "segments, that chain against the beam, and the uncertainty of the beam. If one of the "
+        "last two is the largest, no engine and no step gives more."
     )
     cure = (
-        "More segments (--segments), or --springs corrected; a shorter step does not help. Where "
-        "the beam itself is in doubt, keep away from whole numbers of its frequency over the "
-        "speed, or give it damping_s."
+        "More segments (--segments), or --springs corrected; a shorter step does not help. If the "
+        "beam itself is uncertain, keep away from whole numbers of its frequency over the speed, "
+        "or give it damping_s."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -219,14 +219,14 @@ class TruthEnds:
             return None
         own = engine_share(errors, links)
         parts = (
-            f"of the largest deflection the engine leaves {own:.1e}, {links.pieces} "
-            f"{links.chain:.1e}{' (estimated)' if links.estimated else ''}, the beam's own "
-            f"doubt is {links.doubt:.1e}, and the linear theory is off by {links.linear:.1e}"
+            f"parts of the largest deflection: engine {own:.1e}, {links.pieces} "
+            f"{links.chain:.1e}{' (estimated)' if links.estimated else ''}, uncertainty of the "
+            f"beam {links.doubt:.1e}, error of the linear theory {links.linear:.1e}"
         )
         if own > max(links.chain, links.doubt):
-            return Finding(self.id, "pass", f"the engine is what is off: {parts}", own)
+            return Finding(self.id, "pass", f"the engine is off: {parts}", own)
         ends = f"the {links.pieces.split()[1]} end"
-        ends = ends if links.chain > links.doubt else "the truth ends"
+        ends = ends if links.chain > links.doubt else "the reference ends"
         level: Level = "advice" if links.doubt > UNSURE else "pass"
         return Finding(self.id, level, f"{ends} before the engine does: {parts}", own)
 

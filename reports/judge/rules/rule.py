@@ -56,6 +56,13 @@ class Finding:
     limit: float | None = None
     cure: str = ""
 
+    @property
+    def taken(self) -> float:
+        """Its number over its limit; infinite where that is not finite, NaN without a limit."""
+        if self.number is None or not self.limit:
+            return math.nan
+        return self.number / self.limit if math.isfinite(self.number) else math.inf
+
 
 class Rule(Protocol):
     """One check with an ID, a title, its reason, and a cure for its failure."""

@@ -7,7 +7,7 @@ from reports.judge.rules.rule import Evidence, Finding, Level, measure
 from reports.judge.three_steps import Convergence
 from reports.quantities import named
 
-FINE = ("shrinks", "at rounding", "as solved", "as the truth")
+FINE = ("shrinks", "at rounding", "as solved", "as the reference")
 BAD = ("grows", "diverges")
 SOFT = 1e-4
 """Part of a force that MuJoCo's stiffest documented impedance (0.9999) leaves open."""
@@ -17,13 +17,13 @@ class ErrorShrinks:
     id = "CC110"
     title = "convergence"
     explanation = (
-        "An error that stays when the step is halved twice is no discretisation error: "
-        "the model converges to the wrong answer. Where the cell is gated an error that grows, or "
-        "that is over the limit of the finer step, fails, as does a finer run that breaks down."
+        "An error that stays when the step is halved twice is no discretisation error: the model "
+        "converges to the wrong answer. In a gated cell an error that grows, or that is over the "
+        "limit of the finer step, fails, as does a finer run that breaks down."
     )
     cure = (
-        "A shorter step does not help; change what the engine models: stiffness of joints, sweeps "
-        "over them (settings of the engine)."
+        "A shorter step does not help; change the model of the engine: stiffness of joints, sweeps "
+        "over them (its settings)."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -38,8 +38,8 @@ class ForcesShrink:
         "accelerations, of which a soft constraint leaves a share open at every step."
     )
     cure = (
-        "Look at which instant the forces belong to: half a step off is an error of first order. "
-        "A floor is what soft constraints leave open: stiffen them."
+        "Look at which instant the forces belong to: half a step off is an error of first order. A "
+        "floor comes from soft constraints: stiffen them."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -83,10 +83,10 @@ class ErrorSmooth:
     title = "smooth"
     explanation = (
         "The error of an engine grows and falls over many steps. One that jumps to and fro between "
-        "two samples is rounding or noise in the log, whatever is below it."
+        "two samples is rounding or noise in the log."
     )
     cure = (
-        "Log every digit; look for what is added to the numbers, and for joints whose solver stops "
+        "Log every digit; look for noise added to the numbers, and for joints whose solver stops "
         "too soon (take profile tuned)."
     )
 

@@ -60,7 +60,7 @@ class SynthRequest:
     best: Annotated[
         int, option("So many of the solutions are listed and written.", min=1, max=1000)
     ] = 5
-    prove: Annotated[bool, "Run each in every engine, through what is asked."] = False
+    prove: Annotated[bool, "Run each in every engine, through the requested positions."] = False
     engines: Engines = ()
     profiles: Annotated[
         Sequence[str], option("Profile of the engines; default: tuned.", "--profile")
@@ -71,7 +71,7 @@ class SynthRequest:
     vary_m: Annotated[
         float | None,
         option(
-            "What dimensions that are off by up to so much do, and clearances.",
+            "Effect of dimensions off by up to so much, and of clearances.",
             "--vary METRES",
             min=1e-9,
             max=1e6,

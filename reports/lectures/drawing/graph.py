@@ -51,7 +51,7 @@ class GraphRequest:
         by = _chosen("--by", self.by, METHODS, ", ")
         over = _chosen("--over", self.over, OVERS, " or ")
         if self.map is not None and self.log is None:
-            raise CrankcheckError(f"--map {self.map}: it is of a log; give --log as well")
+            raise CrankcheckError(f"--map {self.map}: belongs to a log; give --log as well")
         if self.output is not None:
             read = [find_scene(self.scene), self.log, self.map]
             check_file(self.output, "-o", ENDINGS, inputs=read)

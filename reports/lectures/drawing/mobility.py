@@ -98,7 +98,7 @@ def _mobility(mobility: SchemeMobility) -> str:
     """The real mobility, its idle part, and the particulars of the drawn position."""
     words = f"W = {mobility.real}"
     if mobility.idle:
-        words += f", {mobility.useful} without what is idle"
+        words += f", {mobility.useful} without idle ones"
     if mobility.near.is_singular:
         words += (
             f"; {mobility.near.here} in the drawn position, which is singular: next to it a motion "

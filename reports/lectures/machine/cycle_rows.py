@@ -96,7 +96,7 @@ def notes(cycle: SteadyCycle) -> list[str]:
     """Notes on the meaning of the numbers."""
     told = [
         "Coefficient of fluctuation: (largest - smallest speed) / mean, the mean being half their "
-        "sum. Torques count along the motion: what is positive drives."
+        "sum. Torques count along the motion: positive ones drive."
     ]
     scene = cycle.machine.scene
     if not scene.is_free:
@@ -109,12 +109,13 @@ def notes(cycle: SteadyCycle) -> list[str]:
         )
     elif cycle.machine.is_rated:
         told.append(
-            "Let go: the loads alone settle the speed. A change of the energy falls to "
+            "Free motion: the loads alone settle the speed. A change of the energy falls to "
             f"{readable(cycle.settling)} of itself in a cycle."
         )
     else:
         told.append(
-            "Let go under loads that balance at any speed: that of its start is taken as the mean."
+            "Free motion under loads that balance at any speed: the speed of the start is taken as "
+            "the mean."
         )
     return told
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -21,6 +20,7 @@ from models.errors import CrankcheckError
 from models.files.assemble import scene_text
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
+from reports.figures.layout import Layout, laid_out
 from reports.lectures.machine import cycle_rows
 from reports.output.console import say_whole
 from reports.output.formats import ENDINGS, write_frame
@@ -57,13 +57,6 @@ class MachineCycle(Shown):
     def extreme_speeds_rad_s(self) -> tuple[float, float]:
         """The largest and the smallest speed."""
         return self.details.extreme_speeds_rad_s
-
-    @property
-    def extreme_angles_deg(self) -> tuple[float, float]:
-        """The driver's angles at the largest and at the smallest speed."""
-        one = self.details
-        high, low = (math.degrees(one.driver_rad(u)) for u in (one.fastest, one.slowest))
-        return high, low
 
     @property
     def surplus_j(self) -> float:
@@ -167,13 +160,14 @@ Figures = Annotated[Path | None, option("Draw the cycle, as SVG and PDF.", "DIR"
 
 
 @dataclass(frozen=True)
-class CycleRequest:
+class CycleRequest(Layout):
     """Arguments of `cycle`, as given."""
 
     scene: SceneName
     output: Output = None
     figures: Figures = None
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a steady cycle. Raises CrankcheckError for a faulty request."""
         _check_outputs(self)
@@ -226,7 +220,7 @@ def _write(
 
 
 @dataclass(frozen=True)
-class FlywheelRequest:
+class FlywheelRequest(Layout):
     """Arguments of `flywheel`, as given. ``written`` is the file of the scene, which is in free
     motion there with ``free``."""
 
@@ -237,10 +231,12 @@ class FlywheelRequest:
     written: Annotated[
         Path | None, option("Write the scene with the flywheel.", "--write FILE.toml")
     ] = None
-    free: Annotated[bool, "With --write: let go in its cycle, the drive's torque as a load."] = (
-        False
-    )
+    free: Annotated[
+        bool,
+        "With --write: a scene of free motion in its cycle, with the drive's torque as a load.",
+    ] = False
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a flywheel. Raises CrankcheckError for a faulty request."""
         _check(self)
@@ -255,7 +251,7 @@ class FlywheelRequest:
             if self.free:
                 scene = cycle_scene(found.cycle, flywheel=False)
             write(self.written, scene_text(scene, {scene.driver.link: found.inertia_kg_m2}))
-            told = ", let go in its steady cycle" * self.free
+            told = ", free in its steady cycle" * self.free
             say_whole(console, f"{self.written}: {found.cycle.machine.scene.name} with it{told}")
         cycle_rows.show_flywheel(console, found)
         return 0

@@ -200,9 +200,9 @@ def speeds_notes(over: OverSpeeds) -> list[str]:
         for each in unstable_speeds(over)
     ] or ["At none of these speeds deviations grow."]
     told.append(
-        f"Critical speeds: a mode vibrates at a whole order, up to {HIGHEST}, that the driver "
-        "excites; within the band the motion hangs on the stiffness too much to be told. By "
-        "equations linear in the deflection, with the stiffness that pull gives."
+        f"Critical speeds: the driver excites a mode at a whole order, up to {HIGHEST}; within the "
+        "band the motion depends on the stiffness too much to be computed. By equations linear in "
+        "the deflection, with the stiffness that pull gives."
     )
     return told
 

@@ -7,8 +7,8 @@
   const part = (name) => document.getElementById(`elastic-${name}`);
   const [scene, course, error, table] = ["scene", "course", "error", "cells"].map(part);
   const TOLD = {
-    deflection: "How far the middle of each elastic link is from the line between its pins, at the finest step that ended well. Grey and wide: the beam.",
-    error: "What engines leave of the deflection of the beam, at the finest step that ended well.",
+    deflection: "Distance of the middle of each elastic link from the line between its pins, at the finest step without failure. Grey and wide: the beam.",
+    error: "Error of the deflection compared with the beam, at the finest step without failure.",
   };
   let legend = null;
   let orders = null;
@@ -20,7 +20,7 @@
     hovertemplate: `${escaped(name)}: %{y:.4~g} mm<extra></extra>`,
   });
 
-  /** The beam, once for each elastic link: what the engine has, less what it is off by. */
+  /** The beam, once for each elastic link: what the engine has, less meaning off by. */
   function beams(courses) {
     const first = new Map(courses.toReversed().map((each) => [each.link, each]));
     return [...first.values()].map((each) => {
@@ -37,7 +37,7 @@
       const look = looks[each.look];
       return trace(each, each.rows[bent ? 0 : 1], `${look.name}, ${each.link}, step ${each.step}`, colour(`c${look.colour}`), 1.6, look.dash);
     });
-    const title = bent ? "deflection [mm]" : "off the beam by [mm]";
+    const title = bent ? "deflection [mm]" : "error against the beam [mm]";
     return {
       data: [...(bent ? beams(courses) : []), ...engines],
       layout: {
@@ -57,7 +57,7 @@
   }
 
   function curves() {
-    part("caption").textContent = shown().length ? TOLD[course.value] : "No run of this scene ended well.";
+    part("caption").textContent = shown().length ? TOLD[course.value] : "All runs of this scene failed.";
     plot();
   }
 

@@ -4,12 +4,12 @@
 crankcheck.freeCourses = (() => {
   const { colour, escaped, folded, short, unpacked } = crankcheck;
   const COURSES = {
-    phase_judged: { title: "error of phase / G [rad]", log: true, told: "What the driver's angle is off by at the same time, over the sensitivity of the motion. Thin: its size at the moment; thick: the largest so far." },
-    phase: { title: "error of phase [rad]", log: true, told: "What the driver's angle is off by at the same time. Thin: its size at the moment; thick: the largest so far." },
-    energy: { title: "change of energy [of largest kinetic energy]", told: "What the engine's energy has changed by since the start, less the work of loads and dampers. Thin: as it is; thick: means over windows, of which the last less the first is the drift." },
-    speed: { title: "angular velocity of the driver [rad/s]", truth: 1, told: "Grey and wide: the truth." },
-    angle: { title: "angle of the driver [turns]", truth: 0, told: "Grey and wide: the truth." },
-    portrait: { title: "angular velocity of the driver [rad/s]", told: "Angular velocity over the angle of the driver. Grey and wide: the truth." },
+    phase_judged: { title: "error of phase / G [rad]", log: true, told: "Error of the driver's angle at the same time, over the sensitivity of the motion. Thin: its size at the moment; thick: the largest so far." },
+    phase: { title: "error of phase [rad]", log: true, told: "Error of the driver's angle at the same time. Thin: its size at the moment; thick: the largest so far." },
+    energy: { title: "change of energy [of largest kinetic energy]", told: "Change of the engine's energy since the start, less the work of loads and dampers. Thin: as it is; thick: means over windows, of which the last less the first is the drift." },
+    speed: { title: "angular velocity of the driver [rad/s]", truth: 1, told: "Grey and wide: the reference." },
+    angle: { title: "angle of the driver [turns]", truth: 0, told: "Grey and wide: the reference." },
+    portrait: { title: "angular velocity of the driver [rad/s]", told: "Angular velocity over the angle of the driver. Grey and wide: the reference." },
   };
 
   /** The curves of a run by name, unpacked once. */

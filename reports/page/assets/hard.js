@@ -6,7 +6,7 @@
   const own = crankcheck.embedded("hard");
   const part = (name) => document.getElementById(`hard-${name}`);
   const [table, row, figure, failures] = ["map", "row", "figure", "failures"].map(part);
-  const ROOM = 0.6; // how far beyond the truth a run is kept in the picture, over the truth's size
+  const ROOM = 0.6; // how far beyond the reference a run is kept in the picture, over the truth's size
   const FARTHEST = 40; // far out of the picture, over the size of the drawing
   const ROUND_MS = 5000; // a turn of the crank on the screen; more turns take longer, but not for ever
   const order = own.pictures.map((picture) => picture.run);
@@ -108,7 +108,7 @@
     const near = own.runs.flatMap((each, number) =>
       !each.grid && each.case === run.case && each.engine === run.engine && each.profile === run.profile ? [number] : []);
     near.sort((a, b) => own.runs[a].value - own.runs[b].value);
-    const words = near.length ? [html("p", { class: "note" }, "Looked at by the bisection, in between:")] : [];
+    const words = near.length ? [html("p", { class: "note" }, "Tried by the bisection, in between:")] : [];
     part("between").replaceChildren(...words, html("div", { class: "strip" }, ...near.map(chip)));
   }
 
@@ -132,7 +132,7 @@
     part("command").replaceChildren(...run.command.split(/(?= --)/).map((each) => html("span", {}, each)));
     part("note").textContent = noPicture(run);
     part("engine").textContent = name(run);
-    if (picture) part("picture").setAttribute("aria-label", `${picture.title}: the truth, and ${name(run)} over it`);
+    if (picture) part("picture").setAttribute("aria-label", `${picture.title}: the reference, and ${name(run)} over it`);
     between(run);
     const place = order.indexOf(chosen);
     part("before").disabled = !order.length || place === 0;

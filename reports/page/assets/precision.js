@@ -6,12 +6,16 @@
   const own = crankcheck.embedded("precision");
   const scene = document.getElementById("precision-scene");
   const cost = document.getElementById("precision-cost");
+  const filled = document.getElementById("precision-filled");
   const chart = document.getElementById("precision-chart");
   if (!own.timed) cost.closest(".field").hidden = true;
   cost.value = own.timed ? "time" : "steps";
 
   /** The cost of the points of a line: time a turn [ms], or steps. */
   const costs = (line, kind) => (kind === "time" ? line.s_per_turn.map((s) => s && 1e3 * s) : line.steps);
+
+  /** True if a point is within its tolerance, or within the fixed error that is chosen. */
+  const isGood = (good, error) => (filled.value ? error <= Number(filled.value) : good);
 
   function label(line, look, i) {
     const at = `${line.steps[i]} steps a turn${line.dt_s ? ` (dt ${short(line.dt_s[i], 3)} s)` : ""}`;
@@ -33,7 +37,7 @@
       line: { color: paint, width: 1.6, dash: look.dash },
       marker: {
         color: paint, size: 9, line: { color: paint, width: 1.6 },
-        symbol: line.within.map((good) => (good ? look.symbol : `${look.symbol}-open`)),
+        symbol: line.within.map((good, i) => (isGood(good, line.error[i]) ? look.symbol : `${look.symbol}-open`)),
       },
       text: line.error.map((_, i) => label(line, look, i)), hovertemplate: "%{text}<extra></extra>",
     };
@@ -50,6 +54,10 @@
       layout: {
         xaxis: { ...crankcheck.logAxis(axis, false), ...crankcheck.ticks(shown.lines.flatMap((line) => costs(line, kind))) },
         yaxis: crankcheck.logAxis("error [rad, or of longest link]", true),
+        shapes: filled.value ? [{
+          type: "line", xref: "paper", x0: 0, x1: 1, y0: Number(filled.value), y1: Number(filled.value),
+          line: { color: colour("front"), width: 1.5, dash: "dash" },
+        }] : [],
       },
     };
   }
@@ -79,4 +87,5 @@
   advise();
   scene.addEventListener("change", draw);
   cost.addEventListener("change", draw);
+  filled.addEventListener("change", draw);
 })();

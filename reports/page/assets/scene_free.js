@@ -1,5 +1,5 @@
 "use strict";
-// A scene that is let go, in motion as it was integrated.
+// A scene that is in free motion, in motion as it was integrated.
 
 (() => {
   const own = crankcheck.embedded("motion");

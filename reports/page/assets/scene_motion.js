@@ -1,5 +1,5 @@
 "use strict";
-// A scene as the closed form has it, in motion, with what drives it where it was asked for.
+// A scene as the closed form has it, in motion, with what drives it where it was requested.
 
 (() => {
   const own = crankcheck.embedded("motion");

@@ -49,7 +49,7 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
     part("angle").textContent = shown;
     const off = each.map((run) => `${run.name} ${short(mechanism.farthest(run.rows, position))} m`);
     if (readout) readout.textContent = (off.length ? `Off the reference here by: ${off.join("; ")}.` : "No run is drawn.") +
-      (cut ? " What would leave the drawing is cut off." : "");
+      (cut ? " Parts outside the drawing are cut off." : "");
     drawn(mechanism, position);
   }
 

@@ -75,16 +75,16 @@ def notes(report: PageReport) -> list[str]:
     """Return a line on each group of columns: what its numbers are."""
     span = " to ".join(dict.fromkeys(map(duration, near_ms(report)))) or "none was run"
     return [
-        "Numbers are of profile tuned, the median over the scenes unless they say otherwise; under "
-        "a dash is its reason.",
-        "Error at 1 ms: the largest of place in a run (rad, or of the longest link), at the "
-        f"measured step nearest to 1 ms ({span}); order and floor of it: fitted per scene, the "
-        "floor is the largest.",
+        "Numbers are of profile tuned, the median over the scenes unless stated otherwise; the "
+        "reason of a dash stands under it.",
+        "Error at 1 ms: the largest error of position in a run (rad, or over the longest link), at "
+        f"the measured step nearest to 1 ms ({span}); its order and floor are fitted per scene, "
+        "and the largest floor is shown.",
         "Turn to 1e-3, 1e-4: the least measured time of a turn, of all settings and steps, with "
         "every scene within that error.",
-        "Hard cases: the share of graded values that are held.",
-        "Free motion: the error of place over the sensitivity of the motion. Forces: that of the "
-        "reactions, of the largest one. Both at the finest step.",
+        "Hard cases: the share of graded values that the engine holds.",
+        "Free motion: the error of position over the sensitivity of the motion. Forces: the error "
+        "of the reactions over the largest one. Both at the finest step.",
     ]
 
 

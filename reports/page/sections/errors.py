@@ -8,7 +8,7 @@ import pandas as pd
 
 from reports.output.numbers import count, error_text
 from reports.page.sections.section import Section
-from reports.protocol.way import TARGETS
+from reports.protocol.way import FIXED, SHRINKS, TARGETS
 from reports.quantities import QUANTITIES, quantity
 from reports.results.candidates import MEANS, Candidate, Costs, front, front_over_all
 from reports.results.line_fit import LineFit
@@ -141,6 +141,8 @@ def precision(report: Report) -> Section:
             "timed": report.timed,
             "lost": count(len(lost), "run") if len(lost) else "",
             "targets": TARGETS,
+            "fixed": [(target, f"error up to {error_text(target, 1)}") for target in FIXED],
+            "shrinks": SHRINKS,
             "costs": [_cost(report, each) for each in report.costs] if report.timed else [],
             "means": MEANS,
         },

@@ -47,10 +47,10 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
             "opened": matrix.runs[shown[0]].case if shown else None,
             "opened_engine": matrix.runs[shown[0]].engine if shown else None,
             "legend": [
-                (sign(name), kind(name), name, meanings.get(name, "not known to this page"), number)
+                (sign(name), kind(name), name, meanings.get(name, "unknown on this page"), number)
                 for name, number in outcomes_seen(matrix).items()
             ],
-            "shaded": errors[0] if len(errors) == 1 else "what each case says",
+            "shaded": errors[0] if len(errors) == 1 else "details of each case",
             "shades": [f"below {error_text(SHADES[0], 1)}", *map(_from, SHADES)],
             "failures": _failures(matrix, shown),
             "left_out": count(len(matrix.pictures) - len(drawn), "moving picture"),

@@ -18,7 +18,7 @@ from reports.compare.free_facts import window_means
 from reports.describe.facts import describe_law, facts
 from reports.drawing import moving, shape
 from reports.judge.rules import RULES
-from reports.output.numbers import duration, error_text
+from reports.output.numbers import duration, floor_words
 from reports.page.sections.errors import DIAGRAMS, SHARES
 from reports.page.sections.section import BUDGET, Section, chosen, steps_held
 from reports.quantities import QUANTITIES
@@ -232,13 +232,9 @@ def _command(line: Line) -> str:
 
 def _floor(found: Split) -> str:
     if not math.isfinite(found.floor):
-        return f"Model floor not told apart: {found.why}." if found.why else ""
-    if found.seen:
-        return f"Model floor up to {error_text(found.floor)}, extrapolated to a step of zero."
-    return (
-        f"No model floor seen: the extrapolation to a step of zero is good to "
-        f"{error_text(found.doubt)}."
-    )
+        return f"Model floor not separated: {found.why}." if found.why else ""
+    floor = floor_words(found.floor if found.seen else math.nan, found.doubt)
+    return f"Extrapolated to a step of zero: {floor}."
 
 
 INSTANTS = 721
@@ -283,7 +279,7 @@ class FreeCourses:
     def embedded(self) -> dict[str, object]:
         """Return the scene with its drawings; without a drawing where the store has no readable
         text of it, or no run that moved."""
-        lines, own = self.report.lines_of(self.name), self.report.of_kind("let go")
+        lines, own = self.report.lines_of(self.name), self.report.of_kind("free")
         time_s = self._instants(lines)
         ran = any(str(key) in self.sizes for line in lines for key in line.cells["key"])
         truth = self._truth(time_s) if ran else None

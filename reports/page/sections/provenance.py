@@ -59,59 +59,57 @@ def _settings(report: Report, engine: str) -> dict[str, object]:
 
 
 RULES = {
-    "One truth for all": "Every engine is held to the closed-form solution of the mechanism, "
-    "whose own error is bounded at every sample. No engine is the reference for another.",
+    "One reference for all engines": "Every engine is compared with the closed-form solution of "
+    "the mechanism, whose own error is bounded at every sample. No engine is the reference for "
+    "another.",
     "One scene": "Lengths, masses, joints and the assembly branch come from one scene file. Each "
     "engine's model is built from it and from nothing else.",
-    "One start": "Every run starts from the same state: angles, places and velocities of the "
+    "One start": "Every run starts from the same state: angles, positions and velocities of the "
     "closed form at the first instant, with all pins closed.",
-    "One drive": "The crank follows the same law everywhere. Where it is not where it was told to "
-    "be, that is the drive's error, and is shown apart from the geometry's.",
-    "Each at its own instants": "Positions and velocities are compared at the instants that they "
-    "belong to in the engine that logged them: some engines log a velocity half a step away "
-    "from the position.",
-    "Twice where it can be": "Velocities and accelerations are taken as an engine reports them, "
-    "and by differencing the places that it logged.",
-    "Tolerances that know the step": "A limit follows from the step, the curvature of the motion "
+    "One drive": "The crank follows the same law everywhere. Its distance from the commanded angle "
+    "is the drive error, shown apart from the error of the geometry.",
+    "Each engine at its own instants": "Positions and velocities are compared at the instants to "
+    "which they belong: some engines log a velocity half a step away from the position.",
+    "Rates twice where possible": "Velocities and accelerations are taken as an engine reports "
+    "them, and by differencing its logged positions.",
+    "Tolerances follow the step": "A limit follows from the step, the curvature of the motion "
     "and the conditioning of its dyads. It is one number per quantity, for every engine "
     "alike.",
-    "Judged as tuned, shown as shipped": "What is judged is profile tuned, with the settings that "
-    "suit an engine best. What it does as shipped, and under other settings, is shown beside "
-    "it.",
-    "Errors and times apart": "Runs that are measured for error record every step; runs that are "
-    "timed record nothing. Timed runs go one by one, warmed up, with no other run beside "
-    "them, several times over.",
-    "Time is advice": "The least of the repeats is shown. Times are compared within one processor "
-    "only, and called equal where they differ by less than two timings of one run.",
-    "Nothing left out": "A run that diverged, came apart or was not supported is a row with its "
+    "Judged with profile tuned, shown as shipped": "Profile tuned is judged, with the settings "
+    "that suit an engine best. Results as shipped, and with other settings, are shown beside it.",
+    "Errors and times apart": "Error runs record every step; timed runs record nothing. Timed runs "
+    "go one by one, warmed up, with no other run beside them, several times.",
+    "Time is advice": "The shortest of the repeats is shown. Times are compared on one processor "
+    "only, and called equal if they differ by less than two timings of one run.",
+    "Failed runs stay in": "A run that diverged, came apart or was not supported is a row with its "
     "reason, and takes no part in a recommendation.",
 }
 
 LET_GO = {
-    "One truth for all": (
-        "One truth for all",
-        "Every engine is held to the equation of the machine, integrated with high precision; a "
-        "second integration says what the first may be off by. No engine is the reference for "
-        "another.",
+    "One reference for all engines": (
+        "One reference for all engines",
+        "Every engine is compared with the equation of the machine, integrated with high "
+        "precision; a second integration bounds the error of the first. No engine is the reference "
+        "for another.",
     ),
     "One start": (
         "One start",
-        "Every run starts from the same state: angles, places and velocities, the accelerations "
-        "that weights and loads give it, and all pins closed.",
+        "Every run starts from the same state: angles, positions, velocities, the accelerations "
+        "from weights and loads, and all pins closed.",
     ),
     "One drive": (
         "No drive",
-        "Weights, springs and loads alone move the mechanism. A phase that has run away is told "
-        "from a linkage that has come open, and judged over the sensitivity of the motion.",
+        "Weights, springs and loads alone move the mechanism. An error of phase is separated from "
+        "one of geometry, and judged over the sensitivity of the motion.",
     ),
 }
 """Replacements of rules where every run is a free motion."""
 BENT = {
-    "One truth for all": (
-        "One truth for all",
-        "Every engine is held to the beam with foreshortening, whose motion is solved without an "
-        "engine; a finer description says what that may be off by. The exact chain of as many "
-        "segments says what the engine itself is off by.",
+    "One reference for all engines": (
+        "One reference for all engines",
+        "Every engine is compared with the beam with foreshortening, whose motion is solved "
+        "without an engine; a finer description estimates the error of that solution. The exact "
+        "chain of as many segments shows the error of the engine itself.",
     ),
     "One start": (
         "One start",
@@ -139,6 +137,6 @@ def _other(report: Report) -> Mapping[str, tuple[str, str]]:
     """Return the replacements of rules, where nothing was driven with rigid links."""
     if report.driven is not None:
         return {}
-    kinds = {"let go": LET_GO, "elastic": BENT}
+    kinds = {"free": LET_GO, "elastic": BENT}
     there = (rules for kind, rules in kinds.items() if report.of_kind(kind))
     return {name: rule for rules in there for name, rule in rules.items()}

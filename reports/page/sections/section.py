@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from models.errors import cut, harmless
+from models.files.assemble import toml_value
 from reports.results.lines import Line, value_text
 from reports.results.overview import Report
 from reports.stability.matrix import Matrix
@@ -69,10 +69,7 @@ def sentence_text(text: str) -> str:
 
 def toml_text(value: object) -> str:
     """Return a value as exact TOML, to be copied: invisible characters as their numbers."""
-    if not isinstance(value, str):
-        return json.dumps(value)
-    quoted = json.dumps(value, ensure_ascii=False)
-    return "".join(each if each.isprintable() else _escape(each) for each in quoted)
+    return "".join(each if each.isprintable() else _escape(each) for each in toml_value(value))
 
 
 def _escape(character: str) -> str:

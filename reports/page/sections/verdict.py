@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from reports.output.numbers import count, duration, error_text, listed
+from reports.output.numbers import count, duration, error_text, floor_words, listed
 from reports.page.sections.copied import recommended
 from reports.page.sections.section import Section
+from reports.protocol.way import FIXED, SHRINKS
 from reports.results.lines import Line, Look, named
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
@@ -25,9 +26,11 @@ class VerdictRow:
     gated: bool
     cells: int
     within: int
+    up_to: tuple[int, ...]
     failed: int
     orders: tuple[float, ...]
     floors: tuple[float, ...]
+    below: float
     told: int
     lines: int
     finest: float
@@ -40,9 +43,10 @@ class VerdictRow:
 
     @property
     def floor(self) -> str:
-        """Floors that were seen, and the number of scenes."""
+        """Floors that were seen, and the number of scenes; or the size below which there may be
+        one."""
         if not self.floors:
-            return "none seen" if self.told else "too few steps"
+            return f"below {error_text(self.below)}" if self.told else "too few steps"
         told = spread([error_text(floor) for floor in sorted(self.floors)])
         return f"{told} on {len(self.floors)} of {count(self.lines, 'scene')}"
 
@@ -71,6 +75,8 @@ def build(report: Report) -> Section:
                 for engine, version in report.engines.items()
             ],
             "rows": rows,
+            "fixed_heads": [f"to {error_text(target, 1)}:" for target in FIXED],
+            "shrinks": SHRINKS,
             "held_to": list(dict.fromkeys(kind.error for kind in kinds)),
             "steps": sorted({f"{s:g}" for s in report.cells["steps_per_turn"]}, key=float),
         },
@@ -87,7 +93,7 @@ def level(gated: pd.DataFrame) -> str:
 def verdict(gated: pd.DataFrame) -> str:
     """Return the sentence for all gated cells: profile tuned without overrides."""
     if gated.empty:
-        return "No verdict: the store has no cells of profile tuned, which is what is judged."
+        return "No verdict: the store has no cells of profile tuned, the judged profile."
     within, number = int((gated["verdict"] == "within").sum()), len(gated)
     engines = listed(list(dict.fromkeys(gated["engine"])))
     if within == number:
@@ -114,12 +120,13 @@ def _held(row: VerdictRow) -> str:
     manner = f"As {name}," if "," in name else f"With {name} settings"
     text = f"{manner} it is within tolerance in {_share(row)}"
     if row.failed:
-        text += f", and {count(row.failed, 'run')} of them did not end well"
+        text += f", and {count(row.failed, 'run')} of them failed"
     if row.orders:
-        text += f"; its error falls with order {row.order} of the step"
+        text += f"; its error shrinks with order {row.order} of the step"
     if row.floors:
         return f"{text}, with a floor at {row.floor}."
-    return f"{text}, no floor seen." if row.told else f"{text}; too few steps to tell of a floor."
+    unseen = floor_words(math.nan, row.below) or "too few steps to see a floor"
+    return f"{text}; {unseen}."
 
 
 def _shipped(row: VerdictRow) -> str:
@@ -161,15 +168,18 @@ def spread(told: Sequence[str]) -> str:
 
 def _row(look: Look, lines: Sequence[Line]) -> VerdictRow:
     cells = pd.concat([line.cells for line in lines])
+    good = cells[cells["status"] == "ok"]
     finest = [_finest(line) for line in lines]
     return VerdictRow(
         look=look,
         gated=bool(cells["gated"].all()),
         cells=len(cells),
         within=int((cells["verdict"] == "within").sum()),
+        up_to=tuple(int((good["place_pure"] <= target).sum()) for target in FIXED),
         failed=int((cells["status"] != "ok").sum()),
         orders=tuple(x.fit.order for x in lines if x.fit.kind == "order"),
         floors=tuple(x.fit.floor for x in lines if x.fit.kind == "floor"),
+        below=max((x.fit.floor_below for x in lines if x.fit.kind == "order"), default=math.nan),
         told=sum(line.fit.kind not in ("too few", "not run") for line in lines),
         lines=len(lines),
         finest=max(error for error, _ in finest),

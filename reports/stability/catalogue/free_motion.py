@@ -72,11 +72,11 @@ def _long(lasts_s: float) -> Trial:
     return replace(trial, turns=lasts_s / LONG_TURN_S, every=20, followed_s=FOLLOWED_S)
 
 
-_case: Callable[..., Case] = partial(Case, judge="let-go")
+_case: Callable[..., Case] = partial(Case, judge="free-motion")
 FREE_MOTION = (
     _case(
         name="free-coarse-step",
-        title="Step too large, let go",
+        title="Step too large, in free motion",
         source=SWING,
         truth="the equation of the machine, integrated to rounding",
         expected="errors that grow with the step squared, and no blow-up",
@@ -107,7 +107,7 @@ FREE_MOTION = (
     ),
     _case(
         name="free-heavy-coupler",
-        title="Heavy coupler between light links, let go",
+        title="Heavy coupler between light links, in free motion",
         source=SWING,
         truth="the equation of the machine: its reduced mass becomes that of the coupler",
         expected="holds, with more iterations if need be",
@@ -117,7 +117,7 @@ FREE_MOTION = (
     ),
     _case(
         name="free-change-point",
-        title="Parallelogram let go beside its flat position",
+        title="Parallelogram released beside its flat position",
         source="Grashof's rule; nothing carries it through, as it has no speed there",
         truth="the coupler keeps its direction; a pendulum",
         expected="stays a parallelogram, as it falls and as it turns back beside the other one",

@@ -84,7 +84,7 @@ class DrivenWay(Way):
 
     def refuse_length(self, option: str) -> NoReturn:
         raise CrankcheckError(
-            f"{option}: it is of scenes that are let go; add --free, or leave {option} out"
+            f"{option}: this option is for free motion; add --free, or leave {option} out"
         )
 
     def released(self, scene: Scene) -> Scene:

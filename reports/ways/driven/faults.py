@@ -32,7 +32,7 @@ def words(scenes: Collection[str]) -> Sequence[str]:
 
 SETTINGS = {"steps_per_turn": STEPS, "turns": 1}
 GROUPS = {
-    "request": "another run than was asked for",
+    "request": "another run than requested",
     "reference": "numbers that are the reference's",
     "scene": "another mechanism in the engine",
     "pair": "another gear or cam in the engine",
@@ -42,6 +42,7 @@ GROUPS = {
     "misplaced": "numbers of the log in a wrong place",
     "missing": "something missing from the log",
 }
+CONTACT = {"contact": f"another cam by contact, {FINER * STEPS} steps a turn"}
 FAULTS = FaultSet(
     (
         *requests.RUN_FAULTS,
@@ -57,12 +58,7 @@ FAULTS = FaultSet(
     ),
     {
         "motion": FaultRuns(GROUPS, turn, words, SETTINGS, unseen=UNSEEN, also=("contact",)),
-        "contact": FaultRuns(
-            {"contact": f"another cam by contact, {FINER * STEPS} steps a turn"},
-            contact,
-            words,
-            {},
-        ),
+        "contact": FaultRuns(CONTACT, contact, words, {}),
         "forces": FaultRuns(
             {"force": "a right motion with wrong forces"},
             partial(turn, forces=True),

@@ -3,7 +3,7 @@
 from reports.figures import convergence, error_parts, mechanism, work_precision
 from reports.figures.drawing import Drawing
 
-BOTH = ("driven", "let go")
+BOTH = ("driven", "free")
 FIGURES = {
     "work-precision": Drawing(work_precision.draw, work_precision.draw_all, ("driven", "elastic")),
     "convergence": Drawing(convergence.draw, convergence.draw_all, (*BOTH, "elastic")),

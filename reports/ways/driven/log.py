@@ -22,8 +22,8 @@ from reports.quantities import named
 from sim.engine import Run
 
 NO_FIT = (
-    "no speed and start of the driver were found that explain the places: errors are those beside "
-    "the nearest that was tried; log the driver's angle, or use --drive scene"
+    "no speed and start of the driver explain the places: errors are measured against the nearest "
+    "fit; log the driver's angle, or use --drive scene"
 )
 
 
@@ -65,7 +65,7 @@ LEAST_TURNS, LEAST_ROWS = 1.5, 24
 """Harmonics of an error that comes back every turn, and the least turns and rows to find them."""
 TOLD = 0.1
 """Least part of an error, by the mean square, that is described."""
-WORDS = ("stays the same", "grows or falls evenly", "comes back every turn", "does none of these")
+WORDS = ("stays the same", "grows or falls linearly", "comes back every turn", "has another shape")
 SMALL, MOST = 0.1, 0.7
 """Limits of the part of an error that remains at the logged angle: little of it, most of it."""
 
@@ -104,9 +104,9 @@ def seldom(case: LogCase) -> Iterator[str]:
         within = float(np.ptp(excerpt.reading.values)) < math.tau + 1e-2
         if excerpt.out and channel.of == scene.driver.link and channel.kind.turns and within:
             yield (
-                f"{column_text(column)}: {channel.of} turns by {turns:.3g} turns from row to row, "
-                "and of an angle within one turn it can not be told how often it went round in "
-                "between; log it more than twice a turn, or without jumps"
+                f"{column_text(column)}: {channel.of} turns by {turns:.3g} turns from row to row; "
+                "an angle wrapped into one turn does not show the whole turns in between; log it "
+                "more than twice a turn, or without jumps"
             )
 
 
@@ -129,9 +129,9 @@ def _parts(scene: Scene, left: Sequence[Excerpt], errors: Errors) -> str:
     texts = []
     if at_crank is not None and drive is not None:
         texts.append(
-            f"of {_size(worst)} that {worst.quantity} of {worst.body} is off by, "
-            f"{_size(at_crank)} are left at the logged angle of {scene.driver.link}, which is off "
-            f"by {_size(drive)}: {_verdict(at_crank.maximum / worst.maximum)}"
+            f"{worst.quantity} of {worst.body} is off by {_size(worst)}, and by {_size(at_crank)} "
+            f"at the logged angle of {scene.driver.link}, which is off by {_size(drive)}: "
+            f"{_verdict(at_crank.maximum / worst.maximum)}"
         )
     if gap is not None and gap.maximum > 0.0:
         texts.append(f"the joint that opens most, {gap.body}, opens by {_size(gap)}")
@@ -141,8 +141,8 @@ def _parts(scene: Scene, left: Sequence[Excerpt], errors: Errors) -> str:
 def _verdict(share: float) -> str:
     """The cause, by the part of an error that remains at the logged angle of the driver."""
     if share < SMALL:
-        return "it is the drive that is off, and not the geometry"
-    return "the drive does not explain it" if share > MOST else "the drive is a part of it"
+        return "the drive is off, and not the geometry"
+    return "the drive is not the cause" if share > MOST else "the drive is a part of the cause"
 
 
 def _shape(scene: Scene, excerpt: Excerpt) -> str:

@@ -28,8 +28,8 @@ class Bending(DrivenWay):
     placed: Sequence[str] = ("deflection",)
     no_case = "no elastic link in it"
     results = ResultKind(
-        error="Where links bend, the error is that of their deflection against the solved motion "
-        "of the beam, as a share of the largest deflection.",
+        error="The error of elastic links is that of their deflection compared with the solved "
+        "motion of the beam, as a share of the largest deflection.",
         stands=1,
         leads=0,
         axis="largest error of deflection / largest deflection [-]",

@@ -10,8 +10,8 @@ from reports.selftest.fault import STEPS, FaultRuns, FaultSet, RunKind, Unseen
 from reports.selftest.unseen import UNSEEN_ELASTIC
 
 GROUPS = {
-    "segments": "elastic links, as another chain",
-    "vibration": "elastic links, spoilt in the engine",
+    "segments": "elastic links, of another chain",
+    "vibration": "elastic links, wrong inside the engine",
     "deflection": "elastic links, wrong in the log",
 }
 
@@ -37,6 +37,6 @@ FAULTS = FaultSet(
     elastic_faults.FAULTS,
     {
         "elastic": _runs("elastic", GROUPS, ELASTIC_RUNS, UNSEEN_ELASTIC, "beam"),
-        "beam": _runs("beam", {"beam": "elastic links, as an engine's own beam"}, BEAM_RUNS, ()),
+        "beam": _runs("beam", {"beam": "elastic links, by an engine's own beam"}, BEAM_RUNS, ()),
     },
 )

@@ -17,7 +17,7 @@ from reports.protocol.length import Springs
 from reports.ways.driven.log import DrivenLog
 from sim.engine import Run
 
-NO_CAUSE = "causes are not looked for where links bend"
+NO_CAUSE = "causes are not searched for elastic links"
 
 
 def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> ElasticTruth:
@@ -29,12 +29,12 @@ def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> Elas
     name, law = log.scene.name, log.scene.driver.law
     if isinstance(law, Released | Controlled):
         raise CrankcheckError(
-            f"{name}: {', '.join(log.scene.elastic)} bends, and logs of elastic links that are let "
-            "go are not judged yet; `crankcheck verify` runs engines on them"
+            f"{name}: {', '.join(log.scene.elastic)} is elastic, and logs of elastic links in free "
+            "motion are not judged yet; `crankcheck verify` runs engines on them"
         )
     if drive != "scene":
         raise CrankcheckError(
-            f"--drive {drive}: {name} has elastic links, and how these bend goes by the speed of "
+            f"--drive {drive}: {name} has elastic links, whose deflection depends on the speed of "
             "the scene's own driver; leave --drive out"
         )
     instants = [log.time_s, *(each.instants for each in log.readings)]

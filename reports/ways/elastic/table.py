@@ -38,13 +38,10 @@ TABLE = CellTable(
 )
 CHAINS = "engine: against the exact chain of as many segments instead; chain: that against the beam"
 BEAMS = (
-    "a beam of the engine's own has no exact chain, and under chain stands what its elements lock "
-    "by, estimated"
+    "a beam of the engine's own has no exact chain: its column shows the estimated locking of its "
+    "elements"
 )
-THEORY_WORDS = (
-    "doubt: what the beam may be off by; linear: what the linear theory is, which is judged by "
-    "nothing."
-)
+THEORY_WORDS = "doubt: uncertainty of the beam; linear: error of the linear theory, not judged."
 
 
 def words(bent: Sequence[Checked]) -> Sequence[str]:

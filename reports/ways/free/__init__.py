@@ -26,10 +26,10 @@ from reports.ways.driven import DrivenWay
 from sim.engine import Drive
 
 UNITS = (
-    "Let go: errors at the same time over G, by how much a small change of the start has grown; "
+    "Free motion: errors at the same time over G, the growth of a small change of the start; "
     "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
-    "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
-    "when 1e-3 holds."
+    "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 are of the error without G, "
+    "with the time up to which 1e-3 holds."
 )
 
 
@@ -38,7 +38,7 @@ class FreeWay(DrivenWay):
 
     name = "free"
     drive: Drive = "free"
-    kinds: Sequence[str] = ("let go",)
+    kinds: Sequence[str] = ("free",)
     closed_form = False
     limits: Mapping[str, Tolerance] = FREE
     roles: Set[Role] = frozenset(("free", "place", "closure", "derived"))
@@ -49,8 +49,8 @@ class FreeWay(DrivenWay):
     units = UNITS
     over_g: Sequence[str] = FreeFacts.over_g
     results = ResultKind(
-        error="What was let go is held to the integrated motion at the same time, its errors over "
-        "the sensitivity G of that motion.",
+        error="Free motion is compared with the integrated motion at the same time, its errors "
+        "over the sensitivity G of that motion.",
         stands=2,
         leads=2,
         axis="largest error / sensitivity: angle [rad], place / L [-]",
@@ -90,7 +90,7 @@ class FreeWay(DrivenWay):
 
     def refuse_length(self, option: str) -> NoReturn:
         raise CrankcheckError(
-            f"{option}: what is let go has no turns; give --dt and --duration, in seconds"
+            f"{option}: free motion has no turns; give --dt and --duration, in seconds"
         )
 
     def released(self, scene: Scene) -> Scene:
@@ -112,9 +112,7 @@ class FreeWay(DrivenWay):
         return kept_motion(scene, float(np.max(time_s))).at(time_s, bound=False)
 
     def drawn_forces(self, scene: Scene, time_s: Array) -> Forces:
-        raise CrankcheckError(
-            f"{scene.name}: let go, it is drawn without its forces; leave them out"
-        )
+        raise CrankcheckError(f"{scene.name}: free motion is drawn without forces; leave them out")
 
     def drawn_s(self, most_s: float) -> float:
         return most_s

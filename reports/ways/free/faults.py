@@ -23,13 +23,13 @@ def words(scenes: Collection[str]) -> Sequence[str]:
         for scene, (dt_s, steps) in FREE_RUNS.items()
         if scene in scenes
     ]
-    return [f"let go: {', '.join(own)}"]
+    return [f"free motion: {', '.join(own)}"]
 
 
 GROUPS = {
-    "dynamics": "let go, as another machine",
-    "stepping": "let go, and spoilt inside the engine",
-    "record": "let go, and wrong in the log",
+    "dynamics": "free motion, of another machine",
+    "stepping": "free motion, wrong inside the engine",
+    "record": "free motion, wrong in the log",
 }
 SETTINGS = {scene: {"dt_s": dt_s, "steps": steps} for scene, (dt_s, steps) in FREE_RUNS.items()}
 FAULTS = FaultSet(

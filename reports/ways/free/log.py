@@ -52,9 +52,9 @@ def known_log(log: OwnLog, step_s: float, target: Mapping[str, float]) -> tuple[
     rows = truth.known(log.time_s)
     if rows < LEAST_ROWS:
         raise CrankcheckError(
-            f"{log.source}: at t = {log.time_s[rows]:.4g} s the truth of {scene.name} is not known "
-            "well enough to judge by: a small change of its start has grown too much until then; "
-            "log the motion from its start on, or give a wider --target"
+            f"{log.source}: at t = {log.time_s[rows]:.4g} s the reference of {scene.name} is too "
+            "uncertain to judge by: a small change of its start has grown too much by then; log "
+            "the motion from its start on, or give a wider --target"
         )
     return log.first(rows), truth
 
@@ -68,14 +68,14 @@ def _lasts_s(log: OwnLog) -> float:
     )
     if first < -1.001 * float(np.max(np.diff(time_s))):
         raise CrankcheckError(
-            f"{log.source}: its rows begin at t = {first:.6g} s, and {scene.name} is let go at "
-            f"t = 0, before which it has no motion; cut the log there, or {zero}"
+            f"{log.source}: its rows begin at t = {first:.6g} s, and the free motion of "
+            f"{scene.name} starts at t = 0; cut the log there, or {zero}"
         )
     if not 0.0 < last <= MOST_TIMES * scene.driver.law.period_s:
         raise CrankcheckError(
-            f"{log.source}: its rows end at t = {last:.6g} s, and {scene.name} is let go at t = 0 "
-            f"for {scene.driver.law.period_s:.6g} s; look at the unit of its times, and {zero}; a "
-            f"log that lasts more than {MOST_TIMES:g} times as long as its scene needs a scene "
+            f"{log.source}: its rows end at t = {last:.6g} s, and the free motion of {scene.name} "
+            f"lasts from t = 0 for {scene.driver.law.period_s:.6g} s; check the unit of its times, "
+            f"and {zero}; a log more than {MOST_TIMES:g} times as long as its scene needs a scene "
             "with a longer duration"
         )
     latest = max(float(each.instants[-1]) for each in log.readings) if log.readings else last
@@ -87,8 +87,8 @@ def told_of_start(log: OwnLog, truth: FreeTruth) -> Iterator[str]:
     first, sample = float(log.time_s[0]), float(np.min(np.diff(log.time_s)))
     if first > sample:
         yield (
-            f"the log begins at t = {first:.6g} s, and {log.scene.name} is let go at t = 0: what "
-            "its motion began with is not in it"
+            f"the log begins at t = {first:.6g} s, and the free motion of {log.scene.name} at t = "
+            "0: the start of the motion is not in the log"
         )
         return
     off = {
@@ -100,8 +100,8 @@ def told_of_start(log: OwnLog, truth: FreeTruth) -> Iterator[str]:
     if off:
         columns = few((f"{name} by {size}" for name, size in off.items()), SHOWN)
         yield (
-            f"the log does not begin as {log.scene.name} is let go: {columns} at its first row; "
-            "what is off after it is of another motion"
+            f"the log does not begin with the start of {log.scene.name}: {columns} at its first "
+            "row; later errors are those of another motion"
         )
 
 
@@ -123,7 +123,7 @@ def told_of_no_limit(errors: Errors) -> Iterator[str]:
     own = (row for row in errors.rows if row.source == "reported" and row.kind == "total")
     names = dict.fromkeys(row.quantity for row in own if row.tolerance not in errors.limits)
     if names:
-        yield f"held to no limit in free motion: {listed([f'{name} of bodies' for name in names])}"
+        yield f"no limit in free motion: {listed([f'{name} of bodies' for name in names])}"
 
 
 def told_apart(errors: Errors) -> Iterator[str]:
@@ -133,16 +133,16 @@ def told_apart(errors: Errors) -> Iterator[str]:
         return
     left = geometry.pure / phase.pure if phase.pure > 0.0 else np.inf
     what = (
-        "it is the geometry that is off"
+        "the geometry is off"
         if left > OPEN
-        else "it is the phase that is off, and not the geometry"
+        else "the phase is off, and not the geometry"
         if left < CLOSED
         else "both are off"
     )
     yield (
         f"at the same time {phase.body} is off by {_size(phase)} at most, with a sensitivity of "
         f"{short(errors.of_motion.sensitivity)}; at its own angle {geometry.body} is off by "
-        f"{_size(geometry)}: {what}; causes are not looked for in what was let go"
+        f"{_size(geometry)}: {what}; free motion is not searched for causes"
     )
 
 
@@ -154,13 +154,13 @@ class FreeLog:
     """Logs of free motion with rigid links."""
 
     truth_name = "free motion"
-    no_cause = "of {}: see the notes; none is looked for in what was let go"
+    no_cause = "of {}: see the notes; free motion is not searched for causes"
     driver_angle = "phase"
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
         if request.drive != "scene":
             raise CrankcheckError(
-                f"--drive {request.drive}: {log.scene.name} is let go, and nothing drives it; "
+                f"--drive {request.drive}: {log.scene.name} is in free motion, without a drive; "
                 "leave --drive out: the geometry at its own angle is judged beside the motion in "
                 "time"
             )
@@ -219,8 +219,9 @@ class FreeLogBeside(LogBeside, FreeBeside):
         if truth.driver_tells or self._holds((0,)):
             return ""
         return (
-            f"no geometry: the angle of {driver} alone does not say where {self.scene.name} is; it "
-            "takes the angles of all links, and both coordinates of all points that move"
+            f"no geometry: the angle of {driver} alone does not determine the pose of "
+            f"{self.scene.name}; log the angles of all links, and both coordinates of all moving "
+            "points"
         )
 
     @property

@@ -11,7 +11,7 @@ from reports.results.lines import Line, lines
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation, short_target
 
-KIND = "let go"
+KIND = "free"
 SHOWN = (
     *("phase_pure", "phase_limit_pure", "geometry_pure", "energy_pure"),
     *("horizon_1e-1_s", "horizon_1e-3_s", "precision", "sensitivity", "dt_s", "verdict", "status"),
@@ -48,7 +48,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
     names_of_errors, curves = error_curves(report, KIND, ERRORS)
     return Section(
         anchor="free",
-        title="Let go",
+        title="Free motion",
         template="free.html",
         words={
             "rows": [row for line in lines for row in _rows(report, line)],

@@ -40,8 +40,8 @@ def free_error_series(trial: Trial, run: Run) -> ErrorSeries:
         same_time = np.zeros_like(motion.time_s)
         same_time[: known.motion.time_s.size] = _same_time(known)
         parts = {
-            "the phase, or a place at the same time, over the sensitivity": same_time,
-            "a place at the run's own angle": _geometry(whole),
+            "the phase, or a position at the same time, over the sensitivity": same_time,
+            "a position at the run's own angle": _geometry(whole),
             "the energy, over the largest kinetic one,": _energy(whole),
         }
         gaps = [np.abs(gap) / trial.scene.longest_m for gap in run.gaps.values()]
@@ -123,14 +123,13 @@ def _pure(track: Track) -> Array:
 
 
 SERIES = {
-    "let-go": Yardstick(
-        "what is let go, at the same time over the sensitivity, at the run's own angle, and of the "
-        "energy",
+    "free-motion": Yardstick(
+        "free motion at the same time over the sensitivity, at the run's own angle, and its energy",
         free_error_series,
         free_motion,
         free_start,
     ),
     "toggle": Yardstick(
-        "what a throw is short of being over, rad", at_toggle, thrown_motion, thrown_start
+        "distance of a throw from getting over, rad", at_toggle, thrown_motion, thrown_start
     ),
 }

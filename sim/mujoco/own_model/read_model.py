@@ -116,7 +116,7 @@ class ReadModel:
         if variants.held(found, planar.loops, settings) != variants.held(
             wanted, planar.loops, settings
         ):
-            return f"what it includes overrides the file itself: {told.words()}\n"
+            return f"its includes override the file itself: {told.words()}\n"
         return text
 
 

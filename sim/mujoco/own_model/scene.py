@@ -174,8 +174,8 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
     )
     if not scene.longest_m > 0.0:
         raise ModelError(
-            "its links have no length: each has one point, in its centre of mass; an error is told "
-            "over the longest link, so give one of them a second pin, or its mass where it is"
+            "its links have no length: each has one point, in its centre of mass; errors are given "
+            "over the longest link, so give one link a second pin, or the true place of its mass"
         )
     return SceneRead(scene, frames, names, parts)
 

@@ -71,7 +71,7 @@ def _profile(
         {
             "integrator": Setting(integrator, "the file's own, or the recommended one"),
             "loops": Setting(loops, "solref and solimp of the loops, and the solver"),
-            "off": Setting(off, "what is switched off, with + between"),
+            "off": Setting(off, "parts that are switched off, with + between"),
         },
     )
 

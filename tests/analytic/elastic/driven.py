@@ -56,7 +56,7 @@ def form_of(scene: Scene, by: Discretisation = FEW) -> ReducedForm:
 def by_multipliers(
     scene: Scene, until_s: float, by: Discretisation, acting: Acting = GeneralisedForces
 ) -> MultibodyMotion:
-    """Let go, by the equations with multipliers and an explicit method."""
+    """Free motion, by the equations with multipliers and an explicit method."""
     dynamics, *start = ready(scene, assembled(scene), flexible_links(scene, by), acting)
     return MultibodyMotion(dynamics, Projection(), until_s, tuple(start))
 

@@ -107,7 +107,7 @@ def test_sensitivity_is_the_change_with_the_stiffness() -> None:
     [
         (turning(2.9, rocker=30.0), "far from that of small deflections"),
         (turning(1.1), r"bend too far for a beam.*take a lower speed"),
-        (following(turning(), FromRest(1.0, 7.4, 0.3)), "what moves them is not the same"),
+        (following(turning(), FromRest(1.0, 7.4, 0.3)), "their loads are not the same"),
     ],
 )
 def test_what_has_no_periodic_motion_is_refused(scene: Scene, words: str) -> None:

@@ -124,7 +124,7 @@ KINKED = scene(
         (lambda: release(PULSE, 1.0), "coupler bends or stretches"),
         (lambda: release_multibody(PULSE, 1.0, near=assembled(PULSE)),
          "coupler bends or stretches"),
-        (lambda: release_elastic(load_scene("fourbar-elastic"), 0.1), "after no period"),
+        (lambda: release_elastic(load_scene("fourbar-elastic"), 0.1), "no known period"),
         (lambda: release_elastic(PULSE, -1.0), "free for -1 s"),
         (lambda: release_elastic(PULSE, 0.1, Modes(1)).at(np.array([0.2])),
          r"integrated up to 0\.1 s"),
@@ -211,7 +211,7 @@ def test_a_file_names_a_controller_and_reads_back() -> None:
     for old, new, words in [
         ("kp_n_m_rad = 10.0", "kp_n_m_rad = -1.0", "driver.kp_n_m_rad: found -1"),
         ("kd_n_m_s = 0.1\n", "", "driver.kd_n_m_s"),
-        ('shape = "straight"', 'shape = "periodic"', "whose angle is not told"),
+        ('shape = "straight"', 'shape = "periodic"', "with a free driver"),
     ]:
         with pytest.raises(SceneError, match=words.replace(".", r"\.")):
             parse_scene(text.replace(old, new), "file.toml")

@@ -203,7 +203,7 @@ def test_a_motion_that_lacks_something_is_refused(
         (Load("x", "rod", "C", Polynomial((1.0,)), "displacement"),
          r"loads.x.slider: found none; use one of C"),
         (Load("x", "rod", "C", Tabulated((0.0, 0.1), (1.0, 2.0)), "time"),
-         r"loads.x: over the time \[s\] the table goes from 0 to 0.1, and 0.2 is asked for"),
+         r"loads.x: over the time \[s\] the table goes from 0 to 0.1, and 0.2 is requested"),
     ],
 )  # fmt: skip
 def test_a_load_that_is_not_there_is_refused(load: Load, words: str) -> None:

@@ -27,7 +27,7 @@ def _driver(start_deg: float = 0.0, speed_rad_s: float = 0.0) -> str:
 def fourbar(
     a: float = 0.1, b: float = 0.25, c: float = 0.2, d: float = 0.3, branch: int = 1, **start: float
 ) -> Scene:
-    """A four-bar of rods; by default the lecture's, let go from rest a right angle above the
+    """A four-bar of rods; by default the lecture's, released from rest a right angle above the
     bottom."""
     return scene(f"""
 ground = {{ points = {{ A = [0.0, 0.0], D = [{d}, 0.0] }} }}

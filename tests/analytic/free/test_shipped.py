@@ -52,7 +52,7 @@ def brief_and_long(*quick: str) -> list[object]:
 
 
 def steady(name: str, until_s: float) -> tuple[MachineMotion, Array]:
-    """A shipped scene that is let go, and instants up to where its sensitivity is too large."""
+    """A shipped scene that is free, and instants up to where its sensitivity is too large."""
     free = released(load_scene(name), until_s)
     assert isinstance(free, MachineMotion)
     looks = np.linspace(0.0, until_s, 2001)

@@ -26,7 +26,7 @@ def by_bodies(mechanism: Scene, until_s: float) -> MultibodyMotion:
 
 
 def start_state(mechanism: Scene, near: State | None = None) -> State:
-    """Its state when it is let go, with accelerations."""
+    """Its state when it is in free motion, with accelerations."""
     dynamics, q, rates = ready(mechanism, near)
     now, at = dynamics.assembly.at_rates(q[None], rates[None]), np.zeros(1)
     return as_motion(dynamics.assembly, at, now, dynamics.solve(at, now)[0]).state()

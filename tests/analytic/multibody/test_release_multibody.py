@@ -116,7 +116,7 @@ def test_sensitivity_is_what_a_changed_start_or_speed_grows_by() -> None:
 
 @pytest.mark.parametrize("beside_rad", [0.0, 1e-17])
 def test_it_starts_at_a_row_of_a_table(beside_rad: float) -> None:
-    """Or by rounding beside it, and so crosses the row as soon as it is let go."""
+    """Or by rounding beside it, and so crosses the row as soon as it is in free motion."""
     gas = (
         '[loads.gas]\nblock = "C"\ndirection_deg = 180.0\nlaw = "table"\nover = "angle"\n'
         'interpolation = "linear"\nat_deg = [0.0, 90.0, 270.0]\nperiod_deg = 360.0\n'

@@ -122,7 +122,7 @@ REFUSED = [
     )),
     (
         driven(COUPLER, f'pin = "B"\nlinks = ["crank", "coupler"]\nlaw = "free"\n{TURN}'),
-        "nothing drives what is let go: name a link at the ground"),
+        "free motion has no drive: name a link at the ground"),
     *((numbered(branch), said) for branch, said in (
         ("plate = 7", "numbered from 1 to at most 6"),
         ("plate = 5", "has 2 assemblies; give a number from 1 to 2$"),

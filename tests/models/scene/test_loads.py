@@ -132,9 +132,9 @@ def test_one_value_is_that_of_an_array_to_the_bit(own: Characteristic) -> None:
 def test_one_value_past_the_end_of_a_table_is_refused_as_in_an_array() -> None:
     table = Tabulated((0.0, 1.0), (2.0, 3.0))
     assert table.at_one(1.0 + 1e-10) == 3.0  # where rounding has it
-    with pytest.raises(ValueError, match=r"from 0 to 1, and 1\.5 is asked for"):
+    with pytest.raises(ValueError, match=r"from 0 to 1, and 1\.5 is requested"):
         table.at_one(1.5)
-    with pytest.raises(ValueError, match=r"1\.000002 is asked for, 2e-06 beyond"):
+    with pytest.raises(ValueError, match=r"1\.000002 is requested, 2e-06 beyond"):
         table.at_one(1.000002)
     load = Load("valve", "crank", None, table, "angle")
     with pytest.raises(CrankcheckError, match=r"loads\.valve: over the angle \[rad\] the table"):

@@ -46,7 +46,7 @@ def test_an_engine_without_forces_fails_if_named_or_notes(monkeypatch: pytest.Mo
     named, usual = (crank(*line.split()) for line in lines)
     refused(named, "mujoco reports no forces; run it without, or another engine")
     assert usual.exit_code == 0, usual.output
-    assert "forces: mujoco reports none, and is run without" in flat(usual.stderr)
+    assert "forces: mujoco reports none, and runs without" in flat(usual.stderr)
 
 
 def test_a_sweep_keeps_forces_beside_cells_without_and_reports_them(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`crankcheck solve` and `view` of a scene that is let go, or has elastic links: tables, files,
+"""`crankcheck solve` and `view` of a scene that is free, or has elastic links: tables, files,
 figures, a page. More of what they tell is in `test_told.py`."""
 
 import re
@@ -24,7 +24,7 @@ def test_instants_on_the_way_are_told(tmp_path: Path) -> None:
     path = tmp_path / "everything.toml"
     path.write_text(EVERYTHING, encoding="utf-8")
     said = flat(told("solve --duration 0.3 --steps 2", path))
-    assert re.search(r"What acts is not smooth at \d+ instants: 0.1, .*0.25.* s\.", said)
+    assert re.search(r"Loads are not smooth at \d+ instants: 0.1, .*0.25.* s\.", said)
 
 
 def test_a_file_has_the_motion_the_energies_and_the_sensitivity(tmp_path: Path) -> None:
@@ -121,5 +121,5 @@ def test_what_is_let_go_keeps_its_energy(tmp_path: Path) -> None:
     apart = frame["crank_theta_rad"] - frame["crank_theta_rigid_rad"]
     assert 0.0 < np.max(np.abs(apart)) < 1e-2
     said = flat(told(PULSE.replace("0.1", "0.02"), "--steps", 2))
-    assert "driver crank, let go at rest at 90 deg, for 5 s" in said
-    assert "As the next finer description has it, deflections are off by about " in said
+    assert "driver crank, released at rest at 90 deg, for 5 s" in said
+    assert "By the next finer description, deflections are off by about " in said

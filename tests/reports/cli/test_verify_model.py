@@ -37,7 +37,8 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(verify_model, "run_lines", run_here)
     Path("engine.xml").write_text(SLIDER_CRANK)
     Path("parts").mkdir()
-    Path("parts/option.xml").write_text('<mujoco><option timestep="0.002"/></mujoco>')
+    head = '<?xml version="1.0"?><!-- as crankcheck writes files, so that it may replace this -->'
+    Path("parts/option.xml").write_text(f'{head}<mujoco><option timestep="0.002"/></mujoco>')
     Path("whole.xml").write_text(INCLUDING)
     return tmp_path
 
@@ -62,7 +63,7 @@ REFUSED = {
     },
     **{
         f"verify fourbar-lecture-1 {option}":
-        f"{option.split()[0]}: it is of a model of your own; name that with --mjcf"
+        f"{option.split()[0]}: for a model of your own; name it with --mjcf"
         for option in ("--speed 3", "--key home", "--start 3", "--branch C=1",
                        "--write-scene a.toml", "--limit-s 3", "--memory-gb 3")
     },
@@ -121,7 +122,7 @@ LATE = "</worldbody><include file='parts/late.xml'/>"
     ("text", "why"),
     [
         (SLIDER_CRANK.replace("<mujoco", LATIN, 1), "the file is not UTF-8"),
-        (SLIDER_CRANK.replace("</worldbody>", LATE), "what it includes overrides the file itself"),
+        (SLIDER_CRANK.replace("</worldbody>", LATE), "its includes override the file itself"),
     ],
 )
 def test_what_can_not_be_a_diff_is_in_a_text_and_no_diff_is_left(text: str, why: str) -> None:

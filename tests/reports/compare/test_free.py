@@ -108,7 +108,7 @@ def test_samples_of_uncertain_truth_are_left_out_and_counted(truth: FreeTruth, d
     errors = found(replace(truth, free=unsure), done)
     assert errors.of_motion.until_s == pytest.approx(0.099)
     assert errors.of_motion.left_out == STEPS + 1 - 100
-    assert any("truth ends at t = 0.099 s" in note for note in errors.notes)
+    assert any("reference ends at t = 0.099 s" in note for note in errors.notes)
     assert all(row.samples <= 100 for row in errors.rows)
     assert errors.incomplete == ""
 

@@ -188,7 +188,11 @@ def test_a_mistake_is_told_before_anything_is_installed(
     for versions, options, message in (
         ("8.8.8", {"profiles": ["tund"]}, "did you mean tuned"),
         ("8.8.8", {"turns": -1.0}, "--turns"),
-        ("8.8.8", {"scenes": ["fourbar-swing"], "turns": 1.0}, "what is let go has no turns"),
+        (
+            "8.8.8",
+            {"scenes": ["fourbar-swing"], "turns": 1.0},
+            "what is in free motion has no turns",
+        ),
         ("8.8.8", {"cache": tmp_path / "file"}, "--cache"),
         ("8.8.8", {"folder": tmp_path / "file"}, "-o"),
         ("3.6.0 3.x;rm", {}, "not a version number"),

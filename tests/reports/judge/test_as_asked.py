@@ -1,4 +1,4 @@
-"""A run that is not the one that was asked for is refused, by the field that differs; and what is
+"""A run that is not the one that was requested is refused, by the field that differs; and what is
 nearer to the reference than an engine can come was taken from it."""
 
 from collections.abc import Callable
@@ -111,7 +111,7 @@ def test_a_finer_run_is_a_run_of_its_own(name: str, part: int) -> None:
         return replace(done, dt_s=dt_s, steps=steps, every=every, settings=settings)
 
     found = said(cell(FOURBAR, name), again)
-    assert "finer run: asked for dt" in found
+    assert "finer run: requested dt" in found
     assert found.count("the places are those of dt") == (2 if part == 1 else 1)
 
 
@@ -174,7 +174,7 @@ def exactly(scene: Scene, state: Any, _: str, *rest: Any, **asked: Any) -> Run:
 
 def test_rounding_is_no_fault_where_joints_are_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = verdict_of(exactly)
-    assert "what is integrated is off by step^2" in seen["CC111"]
+    assert "integration has an error of step^2" in seen["CC111"]
     monkeypatch.setattr("reports.judge.cell.engine", lambda _: FakeEngine())
     assert "CC111" not in verdict_of(exactly)
 
@@ -191,7 +191,7 @@ def test_exact_rates_are_too_good(monkeypatch: pytest.MonkeyPatch, spared: str |
     found = verdict_of(taken)["CC111"]
     assert "link rocker" in found
     assert ("link coupler" in found) == (spared is None)
-    assert "rates are rounded in another way" in found
+    assert "separately computed rates round in another way" in found
 
 
 @pytest.mark.parametrize("moved", [0.0, 1e-3])

@@ -163,7 +163,7 @@ def test_what_no_limit_holds_has_rules_of_its_own(evidence: Evidence, rule: str,
 def test_an_error_that_does_not_shrink_is_advice_that_names_the_floor() -> None:
     found = by_rule(replace(HEALTHY, convergence=FLAT))["CC110"]
     assert found.level == "advice"
-    assert "does not shrink: floor 7.5e-04 rad" in found.text
+    assert "does not shrink: floor 7.5e-4 rad" in found.text
     assert "CC110" not in by_rule(replace(HEALTHY, convergence=None))
 
 
@@ -210,7 +210,7 @@ FLOOR = {n: replace(HEALTHY, convergence=FLAT, profile=n) for n in ("as-shipped"
     ("evidence", "rule", "said", "not_said"),
     [
         (FLOOR["as-shipped"], "CC110", "use profile tuned", "nothing else"),
-        (FLOOR["tuned"], "CC110", "change what the engine models", "profile tuned"),
+        (FLOOR["tuned"], "CC110", "change the model of the engine", "profile tuned"),
         (with_row(row("angle", maximum=3.0), remedy=TRIED), "CC103", TRIED, "servo"),
         (with_row(row("drive", maximum=3.0), remedy=TRIED), "CC102", "servo", TRIED),
         (replace(HEALTHY, status="diverged", profile="tuned"), "CC101", "shorter step", "tuned"),
@@ -251,7 +251,7 @@ TRUTH = {"known": 4e-5}
         ((7e-4, 7e-4, 7e-4), {}, "does not shrink", 7e-4),
         ((7.5e-4, 8.3e-4, 8.7e-4), {}, "does not shrink", 8.7e-4),  # wanders a little upwards
         ((3e-10, 4e-13, 6e-13), {}, "at rounding", NONE),
-        ((8e-5, 4e-5, 3e-5), TRUTH, "as the truth", NONE),  # all of it may be the truth's
+        ((8e-5, 4e-5, 3e-5), TRUTH, "as the reference", NONE),  # all of it may be the truth's
         ((3e-4, 1.0e-4, 5e-5), TRUTH, "shrinks", NONE),  # down to a floor that may be
         ((3e-4, 2.5e-4, 2.4e-4), TRUTH, "does not shrink", 2.375e-4),
         ((1e-3, 1e-4, math.nan), {}, "diverges", NONE),
@@ -277,7 +277,7 @@ def test_words_tell_an_order_a_floor_and_growth_and_two_steps_are_too_few_for_th
     found = halved(*(1e-3 / 2 ** (1.5 * k) for k in range(3)))
     assert found.words == "order 1.5"
     assert found.order == pytest.approx(1.5)
-    assert halved(*over(7.5e-4, 1e-4)).words == "does not shrink: floor 7.5e-04"
+    assert halved(*over(7.5e-4, 1e-4)).words == "does not shrink: floor 7.5e-4"
     assert halved(1e-6, 2e-6, 4e-6).words == "does not shrink: it grows"
     with pytest.raises(ValueError, match="a floor needs three"):
         convergence((1e-3, 5e-4), (1e-3, 1e-3), "rad")

@@ -180,7 +180,7 @@ REFUSED: list[tuple[dict[str, object], dict[str, object], str]] = [
     ({"C.x_mm": HUGE * 1e-281}, {}, r"row 0, column 'C.x_mm': found 1e\+19 mm; .* 1e\+15 m"),
     ({"rocker [rev]": HUGE * 1e8}, {}, r"found 1e\+308 rev"),
     ({**ALONE, "C_x": np.where(np.arange(400) % 4, np.nan, 0.1)}, {},
-     "column 'C_x': found nan .300 such cells.; if it is of another rate or clock than the rest, "
+     "column 'C_x': found nan .300 such cells.; if it has another rate or clock than the rest, "
      "write a file for each"),
     ({"t": np.repeat(TIME_S[::2], 2), **ALONE}, {}, "stands still.* of two rates, write a file"),
     ({**ALONE, "timestamp": TIME_S}, {}, r"or say time in the \[\[channel\]\] .* write a file for"),

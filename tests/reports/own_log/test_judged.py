@@ -257,7 +257,7 @@ def test_a_table_over_the_angle_of_the_crank_needs_no_times(case: str) -> None:
     ("name", "text"),
     [
         ("drive", "drive (angle of crank)"),
-        ("A", "gap of A (a point of the ground is not judged else)"),
+        ("A", "gap of A (a point of the ground is not judged otherwise)"),
         ("coupler.velocity", "velocity of coupler"),
     ],
 )
@@ -298,9 +298,9 @@ def test_a_drive_that_is_off_is_told_from_a_geometry_that_is() -> None:
     of_drive = judged({"crank": CRANK.theta + WOBBLE, "rocker": rocker})
     of_geometry = judged({"crank": CRANK.theta, "rocker": ROCKER.theta + WOBBLE})
     assert (of_drive.causes, of_geometry.causes) == ((), ())
-    assert "it is the drive that is off, and not the geometry" in of_drive.notes[0]
-    assert "the drive does not explain it" in of_geometry.notes[0]
-    assert "that angle of rocker is off by" in of_geometry.notes[0]
+    assert "the drive is off, and not the geometry" in of_drive.notes[0]
+    assert "the drive is not the cause" in of_geometry.notes[0]
+    assert "angle of rocker is off by" in of_geometry.notes[0]
 
 
 def test_the_joint_that_opens_most_is_told() -> None:
@@ -314,8 +314,8 @@ def test_the_joint_that_opens_most_is_told() -> None:
     ("error", "words"),
     [
         (0.01 * np.sin(2.0 * CRANK.theta) ** 3 + 0.002 * WOBBLE, "comes back every turn"),
-        (WOBBLE, "does none of these"),
-        (0.05 * TIME_S**1.5 + WOBBLE / 3.0, "grows or falls evenly"),
+        (WOBBLE, "has another shape"),
+        (0.05 * TIME_S**1.5 + WOBBLE / 3.0, "grows or falls linearly"),
     ],
 )
 def test_how_an_error_goes_on_is_told(error: Array, words: str) -> None:

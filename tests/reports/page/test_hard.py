@@ -121,7 +121,7 @@ def test_an_outcome_of_good_engines_is_held_and_an_unknown_one_shown(matrix: Mat
     text, told, classes = single(matrix, outcome=f"{EVIL} exploded")
     assert "o-strange" in classes
     assert "exploded (fails)" in told
-    assert "not known to this page" in text
+    assert "unknown on this page" in text
     assert Outline(text).named("img") == []
     locked = one_case(matrix, outcome="locked")
     right = replace(locked, cases=(replace(locked.cases[0], good=("locked",)),))

@@ -157,7 +157,7 @@ PLACED = {
     ),
     "a free link hangs on the truth": (
         {"coupler_deg": EVERY["coupler_deg"] + 0.1}, [("coupler", "apart")], ["crank", "rocker"],
-        {"coupler": "its angle, about B of the truth"}, {},
+        {"coupler": "its angle, about B of the reference"}, {},
     ),
     "angles that contradict each other come apart": (
         angles(MOTION, coupler=0.1), [("crank", "coupler"), ("rocker", "apart")], [],
@@ -205,7 +205,7 @@ def test_a_point_of_one_coordinate_stands_at_the_other_of_the_truth() -> None:
     (piece,) = found.pieces
     assert piece.links == ("rocker",)  # from D, which stands still
     assert np.allclose(piece.off["C"], [1e-3, 0.0])
-    assert found.origins["C"] == "x; the other is that of the truth"
+    assert found.origins["C"] == "x; the other is the reference's"
 
 
 def slid(name: str, point: str, *links: str) -> tuple[LoggedBodies, Motion]:

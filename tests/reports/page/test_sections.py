@@ -4,16 +4,21 @@ import itertools
 import math
 import re
 from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any, cast
 
+import numpy as np
 import pandas as pd
 import pytest
 
+from models.files.reading import load_scene
 from reports.output.numbers import duration
 from reports.page.build import render
+from reports.page.sections import SECTIONS
 from reports.page.sections.copied import reading_forces as build_forces
 from reports.page.sections.copied import recommendation as build_recommendation
 from reports.page.sections.errors import precision as build_precision
-from reports.page.sections.section import chosen, steps_held
+from reports.page.sections.section import PageReport, Section, chosen, steps_held
 from reports.page.sections.stability import holds
 from reports.page.sections.verdict import build as build_verdict
 from reports.results.overview import Report
@@ -66,19 +71,19 @@ def test_the_sentence_of_an_engine_tells_order_cost_and_floor() -> None:
     shipped = line("a", "as-shipped", [3e-3, 2.1e-3, 2.01e-3, 2e-3], limit=0.0)
     found = sentences(shipped, TUNED)["mujoco"]
     assert "With tuned settings it is within tolerance in 4 of 4 cells" in found
-    assert "its error falls with order 2.0 of the step, no floor seen." in found
+    assert "its error shrinks with order 2.0 of the step; a floor below " in found
     assert "Cheapest for an error of 1e-4 on every scene: tuned at 360 steps a turn" in found
     assert "720 µs a turn" in found
     assert "As shipped it is within tolerance in 0 of 4 cells: on 1 of 1 scene" in found
     assert "the error stops falling, at 2.0e-3, however small the step" in found
     told = sentences(TUNED[:2])["mujoco"]
-    assert "too few steps to tell of a floor" in told
-    assert "no floor seen" not in told
+    assert "too few steps to see a floor" in told
+    assert "not excluded" not in told
 
 
 def test_what_reaches_nothing_and_what_fails_is_said() -> None:
     found = sentences(line("a", "tuned", [1e-2, 5e-3, math.inf, math.inf]))["mujoco"]
-    assert "2 runs of them did not end well" in found
+    assert "2 runs of them failed" in found
     assert "For an error of 1e-4 on every scene: nearest is tuned at" in found
     fails = line("b", "tuned", second_order(1e-6))
     fails[-1]["status"] = "branch-changed"
@@ -186,3 +191,22 @@ def test_forces_are_told_at_the_finest_step_with_a_program_where_they_were_asked
     assert "4.0e-2" in render(report, [section])
     asked[-1] = asked[-1] | {"status": "diverged", "reaction_pure": math.nan}
     assert build_forces(report_of(asked)).words["rows"][0]["reaction"] == math.inf
+
+
+def test_cams_have_their_laws_and_the_pressure_angle_round_their_profiles() -> None:
+    def of(name: str) -> Section | None:
+        return SECTIONS["cams"](cast(PageReport, SimpleNamespace(scenes={name: load_scene(name)})))
+
+    assert of("fourbar-lecture-1") is None
+    section = of("cam-flat")  # a circle of 50 mm, 10 mm off its shaft, under a flat face
+    assert section is not None
+    assert section.embedded is not None
+    (cam,) = cast(Sequence[Any], section.embedded["cams"])
+    phi = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
+    course = [1.0 - np.cos(phi), np.sin(phi), np.cos(phi), -np.sin(phi), np.zeros(360)]
+    for found, true in zip(cam["curves"], course, strict=True):
+        assert np.allclose(found, 0.01 * true, atol=1e-12)
+    middle = np.mean(cam["x"]), np.mean(cam["y"])
+    assert np.hypot(*middle) == pytest.approx(0.01, abs=1e-9)
+    assert np.allclose(np.hypot(cam["x"] - middle[0], cam["y"] - middle[1]), 0.05, atol=1e-9)
+    assert (cam["name"], cam["unit"]) == ("cam-flat, disc", "m")

@@ -246,12 +246,12 @@ def test_elastic_links_are_swept_over_steps_that_their_segments_hold() -> None:
 
 def test_what_a_kind_has_for_the_reference_alone_is_left_out_with_a_note() -> None:
     note = left_out_note(["forces", "shaper"])
-    assert note.startswith("slider-crank-self-locking: left out, as engines are given no friction")
+    assert note.startswith("slider-crank-self-locking: left out, as no engine here has friction")
     assert left_out_note(["forces", "slider-crank-self-locking"]) == ""
     assert left_out_note(["kinematics", "shaper"]) == left_out_note(()) == ""
     note = left_out_note(["elastic"])
     assert "fourbar-elastic-controlled and fourbar-elastic-pulse: left out" in note
-    assert "run where they are named" in note
+    assert "name them to run them" in note
 
 
 LEAST, MOST = 40, 50_000

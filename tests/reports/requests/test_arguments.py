@@ -136,7 +136,9 @@ def test_what_is_of_another_scene_and_of_a_run_what_only_a_log_has_to_be_told_is
     with pytest.raises(crankcheck.CrankcheckError, match=f"motion is of {SCENE}, not of"):
         crankcheck.judge("shaper", crankcheck.solve(SCENE), target=1)
     for option, value in {"step_s": 1e-3, "drive": "fitted", "map": {}, "require": "angle"}.items():
-        with pytest.raises(crankcheck.CrankcheckError, match=f"^{option}: it is of logs, and this"):
+        with pytest.raises(
+            crankcheck.CrankcheckError, match=f"^{option}: this option is for logs, and this"
+        ):
             crankcheck.judge(SCENE, ran, **{option: value})
 
 

@@ -67,7 +67,7 @@ def test_facets_of_a_file_are_kept_and_run(scene: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "facets", "message"),
     [
-        ("fourbar-lecture-1", 90, "--facets: it is of cams, and no scene has one"),
+        ("fourbar-lecture-1", 90, "--facets: no scene has a cam"),
         ("", 9, "--facets: found 9; a cam by contact has 12 to 10000"),
     ],
 )

@@ -1,4 +1,4 @@
-"""`crankcheck.solve`: of what is driven, of what is let go, and of elastic links."""
+"""`crankcheck.solve`: of what is driven, of what is in free motion, and of elastic links."""
 
 import re
 from pathlib import Path
@@ -156,7 +156,7 @@ def test_the_coarsest_description_is_no_own_witness(name: str, asked: dict[str, 
 @pytest.mark.parametrize(
     ("name", "asked", "said"),
     [
-        (FREE, {"time_s": [-0.1, 0.1]}, "it was let go at 0"),
+        (FREE, {"time_s": [-0.1, 0.1]}, "its free motion starts at 0"),
         (ELASTIC, {"shape": "straight", "time_s": [-0.1, 0.1]}, "starts at 0, straight"),
         (ELASTIC, {"modes": 2.5}, "modes: found"),
         (ELASTIC, {"modes": 2, "elements": 2}, "elements with modes"),

@@ -132,7 +132,7 @@ def test_steps_that_were_logged_at_other_instants_or_not_at_all_are_not_extrapol
     traces[finest] = {**traces[finest], "time_s": moved}
     found = split(line, of(traces), BODY, LENGTH)
     assert found.why == "the two finest steps were logged at different instants"
-    assert split(line, of({}), BODY, LENGTH).why == "no run that the fit stands on was logged"
+    assert split(line, of({}), BODY, LENGTH).why == "no fitted run was logged"
 
 
 def test_a_crank_that_left_its_reach_leaves_the_total() -> None:
@@ -142,7 +142,7 @@ def test_a_crank_that_left_its_reach_leaves_the_total() -> None:
         for key, trace in traces_of(line, waves(1e-3)).items()
     }
     found = split(line, of(traces), BODY, LENGTH)
-    assert found.why == "the logged crank left the reach of the mechanism"
+    assert found.why == "the logged crank left the range of the mechanism"
     for key, parts in found.cells.items():
         assert parts.drive is parts.geometric is None
         np.testing.assert_array_equal(parts.total, traces[key]["angle.rocker"])

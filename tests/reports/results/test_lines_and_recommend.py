@@ -3,6 +3,7 @@ said where none are; noise, time to a target, fronts and profiles on errors and 
 known."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from io import StringIO
@@ -171,7 +172,8 @@ def test_a_line_is_fitted_from_coarse_to_fine() -> None:
     (line,) = lines(stored(cell("a", "x", n, 1e-3 * (90 / n) ** 2, 1.0) for n in steps))
     assert list(line.cells["steps_per_turn"]) == [90, 180, 360, 720]
     assert line.fit.order == pytest.approx(2.0, abs=1e-6)
-    assert line.words == "order 2.0, no floor seen"
+    unseen = r"a floor below \S+ rad is not excluded by these steps"
+    assert re.fullmatch(f"order 2.0; {unseen}", line.words)
     assert line.period_s == pytest.approx(PERIOD_S)
     assert line.settings == {"name": "x"}
     # Of another quantity it is that of its column.

@@ -6,6 +6,7 @@ over two turns with a prescribed drive.
 """
 
 import math
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -108,8 +109,8 @@ DTS = 0.36 / np.array([45, 90, 180, 360, 720, 1440])
 @pytest.mark.parametrize(
     ("errors", "statuses", "text"),
     [
-        (DTS**2, "diverged", "order 2.0, no floor seen; diverges below 90 steps per turn"),
-        (DTS**2, "diverged locked", "order 2.0, no floor seen; locks below 180 steps per turn"),
+        (DTS**2, "diverged", "order 2.0; BELOW; diverges below 90 steps per turn"),
+        (DTS**2, "diverged locked", "order 2.0; BELOW; locks below 180 steps per turn"),
         (DTS**2, "ok ok ok ok ok branch-changed", "changes branch at 1440 steps per turn"),
         ([math.nan] * 6, " ".join(["crashed"] * 6), "crashes at every step"),
         ([math.nan] * 6, " ".join(["unsupported"] * 6), "unsupported"),
@@ -120,7 +121,7 @@ DTS = 0.36 / np.array([45, 90, 180, 360, 720, 1440])
          "irregular: falls to 1.0e-5 rad, then rises to 2.0e-5"),
         ([1e-2, 1e-5, 1e-3, 1e-5, 1e-3, 1e-6], "",
          "irregular: follows no order, 1.0e-6 rad at the finest step"),
-        ([8e-3, 1e-3, 2.2e-4], "", "order 2.6 +- 0.4, no floor seen"),
+        ([8e-3, 1e-3, 2.2e-4], "", "order 2.6 +- 0.4; BELOW"),
         ([4e-3, 3e-3, 2.4e-3], "", "order 0.4: slower than any integrator, a floor may be near"),
     ],
 )  # fmt: skip
@@ -128,6 +129,8 @@ def test_a_line_says_what_it_does(errors: Sequence[float], statuses: str, text: 
     """``statuses``: those of the coarsest steps; the others are ok."""
     ended = [*statuses.split(), *["ok"] * len(errors)][: len(errors)]
     fit = fit_line(DTS[: len(errors)], errors, statuses=ended)
+    below = f"a floor below {fit.floor_below:.1e} rad is not excluded by these steps"
+    text = text.replace("BELOW", re.sub("e-0", "e-", below))
     assert words(fit, "rad", 0.36) == text
     of_time = text.replace("per turn", "per second")
     assert words(fit, "rad", 0.36, "second") == of_time

@@ -37,7 +37,7 @@ ASKED_FOR = {
 }  # fmt: skip
 """What the selftest promises to catch, and at which size."""
 COARSE = 90
-"""Steps of a turn, or for as many as `FREE_RUNS` says, that show most faults of what is let go or
+"""Steps of a turn, or for as many as `FREE_RUNS` says, that show most faults of what is free or
 bends."""
 UNSEEN_AT_90 = {
     "mass-wrong", "gravity-scaled", "gravity-hardly", "torque-late", "torque-lasts", "rate-off",
@@ -89,7 +89,7 @@ LENGTHY = {
     "mass-wrong", "spring-reversed", "spring-long", "damper-lost",
 }  # fmt: skip
 """Truths of their own, which take half a second or more, as does that of `LOOSE`; and of elastic
-links, beams and what is let go what others that fail the same rule are like."""
+links, beams and what is in free motion what others that fail the same rule are like."""
 AGAIN = {
     ("vibration-damped", "pymunk"), ("start-contradicts", "pymunk"),
     ("float32-arithmetic", "mujoco"),
@@ -103,7 +103,7 @@ AGAIN = {
         CASES,
         [case for case in CASES
          if case[0] not in LENGTHY and case[1] != LOOSE and (case[0], case[2]) not in AGAIN],
-        "a second truth, or one more fault of a rule of what bends or is let go",
+        "a second truth, or one more fault of a rule of what bends or is in free motion",
     ),
 )  # fmt: skip
 def test_a_planted_fault_fails_the_rule_that_it_names(case: tuple[str, str, str, int]) -> None:

@@ -1,5 +1,5 @@
 """A plant breaks what it says, where it says, and a size of 0 changes no bit: in driven runs, in
-what is let go, and in elastic links and beams. What need not be seen is not.
+what is in free motion, and in elastic links and beams. What need not be seen is not.
 
 That each fault is caught by its rule and its size of 0 is not, `test_faults.py` says of all kinds.
 """

@@ -1,5 +1,5 @@
 """What of the errors of a run counts, and in which way: of logs that look well at their end and are
-not, of a machine that is let go, and of throws at a toggle."""
+not, of a machine that is in free motion, and of throws at a toggle."""
 
 from dataclasses import replace
 from typing import Any
@@ -86,7 +86,7 @@ def test_a_branch_left_before_the_run_has_settled_does_not_count() -> None:
 
 @pytest.fixture(scope="module")
 def trial() -> Trial:
-    """One that is let go, long enough for means over windows."""
+    """One that is in free motion, long enough for means over windows."""
     return from_rest(load_scene("fourbar-swing"), 0.0, 0.5)
 
 
@@ -152,7 +152,9 @@ def test_cases_of_free_motion_are_run_when_asked_for() -> None:
         return [case.name for case in _cases([*names], {"free": free, "elastic": elastic})]
 
     free, driven, elastic = named(free=True), named(), named(elastic=True)
-    assert {*free} == {n for n, case in CATALOGUE.items() if case.judge in ("let-go", "toggle")}
+    assert {*free} == {
+        n for n, case in CATALOGUE.items() if case.judge in ("free-motion", "toggle")
+    }
     assert {*elastic} == {case.name for case in CATALOGUE.values() if case.way == "elastic"}
     assert sorted(free + driven + elastic) == sorted(CATALOGUE)
     assert named("free-long") == ["free-long"]

@@ -22,8 +22,8 @@ LATER = 10**20 - 10
 
 @dataclass(frozen=True)
 class Case:
-    """A damage, what the notice says of it, how many of the four cells can still be read, and what
-    mends it."""
+    """A damage, what the notice says of it, how many of the four cells can still be read, and to
+    repair it."""
 
     change: Change
     words: str
@@ -137,7 +137,7 @@ CASES = {
     "twice": Case(twice, "rows that another part has too"),
     "cut timings": Case(cut("timings"), "cut short; its times are lost"),
     "timings file": Case(in_place("timings", text), "in place of a folder; all times"),
-    "whole part": Case(gone("cells", "timings"), "not all that its sweeps asked for", 2),
+    "whole part": Case(gone("cells", "timings"), "fewer cells than its sweeps requested", 2),
     "other store": Case(of_another_store, "no sweep in manifest.json asked for", cure="nothing"),
     "other folder": Case(
         lambda f: shutil.copy(first(f, "timings"), f / "cells"),

@@ -86,7 +86,7 @@ def test_what_can_be_read_is_reported_and_the_rest_is_named(
     assert (code, case.words in told) == (0 if case.cells else 2, True), told
     named = [line.partition(": ")[0] for line in told.splitlines()]
     assert len(named) == len(set(named)), "each damaged thing is named once"
-    assert ("what mends it: crankcheck sweep" in told) == (case.cure == "sweep")
+    assert ("to repair it: crankcheck sweep" in told) == (case.cure == "sweep")
     assert ("make it anew: crankcheck sweep" in told) == (case.cure == "anew")
     if not case.cells:
         return
@@ -109,7 +109,7 @@ def test_no_gate_is_passed_on_cells_that_are_lost(name: str, store: Path, whole:
         assert code == case.gate, message
         if case.cells and case.gate:
             assert "2 cells of" in message
-            assert "may be among what is missing there" in message
+            assert "may be among the missing cells there" in message
             assert "mujoco tuned" in message
 
 
@@ -162,7 +162,7 @@ def test_a_cut_baseline_passes_what_it_has(store: Path, capsys: pytest.CaptureFi
     assert CUT in capsys.readouterr().err
     code, message = run("pymunk", "mujoco")
     assert code == 2
-    assert "1 cell of what was asked for, such as fourbar-lecture-1, mujoco tuned" in message
+    assert "1 cell of the requested engine, such as fourbar-lecture-1, mujoco tuned" in message
 
 
 def test_a_lost_manifest_is_remade_for_its_scenes(store: Path, swept: Sweep, whole: Path) -> None:
@@ -173,7 +173,7 @@ def test_a_lost_manifest_is_remade_for_its_scenes(store: Path, swept: Sweep, who
     assert set(found.cells.engine) == {"pymunk"}
     assert found.manifest.scenes == read_store(whole).manifest.scenes
     assert UNASKED in "".join(found.notice)  # of MuJoCo
-    assert "may be among what is missing there" in refusal(differ, whole, store)
+    assert "may be among the missing cells there" in refusal(differ, whole, store)
     assert swept(store) == 0
     same(read_store(store), read_store(whole))
     assert read_store(store).notice == []

@@ -145,7 +145,7 @@ def test_cells_that_a_sweep_is_to_write_yet_are_no_damage(
     aside.rename(only)
     held.release()
     notice = "".join(read_store(store).notice)
-    assert ("what mends it" in notice, BUSY in notice) == (True, False)
+    assert ("to repair it" in notice, BUSY in notice) == (True, False)
 
 
 def test_a_running_sweep_is_not_compared_yet(store: Path, whole: Path, held: FileLock) -> None:
@@ -159,7 +159,7 @@ def test_a_running_sweep_is_not_compared_yet(store: Path, whole: Path, held: Fil
     head, *lines = read_store(store).notice
     assert BUSY in head
     assert "cut short; its times are lost" in "".join(lines)
-    assert "what mends it" in "".join(lines)
+    assert "to repair it" in "".join(lines)
 
 
 def test_a_part_that_a_sweep_replaces_meanwhile_is_read_where_it_is_now(

@@ -195,7 +195,7 @@ def test_a_cell_is_timed_from_its_own_start(monkeypatch: pytest.MonkeyPatch) -> 
         return SimpleNamespace(walls_s=())
 
     monkeypatch.setattr(measured, "time_run", time_run)
-    truth = SimpleNamespace(start="that of the truth")
+    truth = SimpleNamespace(start="that of the reference")
     monkeypatch.setattr(ElasticWay, "truth", lambda way, run: truth)
     driven, free = cell("shaper"), cell("fourbar-swing", drive="free")
     for one in (driven, free, cell("fourbar-elastic")):

@@ -91,7 +91,7 @@ def test_what_the_clock_ended_is_told_and_another_limit_refused(path: Path) -> N
     request = replace(SMALL, budget=2, limit_s=1e-4, output=path)
     code, text = told(request)
     assert code == 1
-    assert "The clock ended 2 of what was tried (--limit-s 0.0001)" in " ".join(text.split())
+    assert "The time limit ended 2 of the trials (--limit-s 0.0001)" in " ".join(text.split())
     with pytest.raises(CrankcheckError, match=r"with limit_s 0\.0001; asked was limit_s 20"):
         told(replace(request, limit_s=20.0))
 
@@ -162,7 +162,7 @@ def test_a_stopped_search_says_what_it_keeps_and_optuna_nothing(
     monkeypatch.setattr(Bench, "attempt", attempt)
     with pytest.raises(Stopped):
         replace(SMALL, output=path).run(Console(quiet=True), Console(file=progress))
-    wanted = f"2 of 6 trials are kept in {path}; the same command goes on from there\n"
+    wanted = f"2 of 6 trials are kept in {path}; the same command continues from there\n"
     assert progress.getvalue() == wanted
     assert capsys.readouterr() == ("", "")
     assert sorted(each.name for each in path.parent.iterdir()) == [".kept.db.lock", "kept.db"]

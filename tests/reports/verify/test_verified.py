@@ -46,7 +46,7 @@ def test_a_setting_that_helps_is_named_with_what_it_leaves(runs: list[Cell]) -> 
 
 def test_where_nothing_helps_all_that_was_tried_is_named_and_half_the_step_told() -> None:
     (told,) = cures(advised(of_turns("fourbar-lecture-1", tolerance={"angle": 1e-12})))
-    assert told.startswith("Nothing tried at the same step lowers the error threefold: ")
+    assert told.startswith("No tried setting lowers the error threefold at the same step: ")
     for setting in ("close=B", "close=D", "solref_timeconst_steps=2", "solref_dampratio=0.3"):
         assert f"mujoco.{setting}" in told
     assert "Half the step leaves" in told

@@ -112,7 +112,7 @@ def test_redundant_joints_are_found_and_taken_by_tuned_alone_others_are_told_in_
 def test_a_law_that_starts_accelerating_leaves_nothing_that_rings(
     law: str, settings: Settings
 ) -> None:
-    """The trapezoidal rule damps nothing: what is wrong at the start would be so ever after."""
+    """The trapezoidal rule damps nothing: fault at the start would be so ever after."""
     scene = driven_by(LAWS[law])
     coarse, fine = (
         off_by(scene, turned(scene, settings=settings, per_turn=n), "rocker", "alpha")
@@ -251,7 +251,7 @@ def test_what_it_can_not_be_given_is_refused_with_the_reason() -> None:
     table = "loads.short: over the time [s] the table"
     for from_s, until_s, status, said in (
         (0.0, 0.05, "diverged", f"stopped after 0.05 s: {table}"),
-        (1.0, 2.0, "unsupported", f"{table} goes from 1 to 2, and 0 is asked for"),
+        (1.0, 2.0, "unsupported", f"{table} goes from 1 to 2, and 0 is requested"),
     ):
         short = Load("short", "rocker", None, Tabulated((from_s, until_s), (1.0, 2.0)))
         done = ran(acted_on(FOURBAR, short), ENGINE, dt_s=1e-3, steps=100, well=False)

@@ -1,4 +1,4 @@
-"""Motions in exudyn: of what is let go, with springs, motors and jumps, all of second order; and of
+"""Motions in exudyn: of what is free, with springs, motors and jumps, all of second order; and of
 its own beams: sag, first frequency, stretch, angles that count turns, what is refused.
 """
 

@@ -239,7 +239,7 @@ def test_what_an_include_overrides_is_said_in_words(place: str, tmp_path: Path) 
     mark = "<default>" if place == "before" else "<worldbody>"
     text = PLAIN.replace(mark, '<include file="more.xml"/>' + mark)
     said = read(tmp_path / "model.xml", text).patch(0.001, Advised())
-    assert said.startswith("what it includes overrides the file itself: set in <option>: integr")
+    assert said.startswith("its includes override the file itself: set in <option>: integr")
 
 
 def test_equalities_of_another_file_are_said_in_words(tmp_path: Path) -> None:

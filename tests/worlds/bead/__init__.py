@@ -1,6 +1,6 @@
 """A kind of scene that crankcheck has not: a bead on a wire that is bent to a circle.
 
-One link is the spoke that holds the bead; the bead is let go from rest. What a kind of scene needs
+One link is the spoke that holds the bead; the bead is free from rest. What a kind of scene needs
 is this folder, and its name in `reports.protocol.way.WAYS`: see
 `tests/reports/protocol/test_new_way.py`.
 """
@@ -48,7 +48,7 @@ class BeadWay(FreeWay):
         if speed:
             raise CrankcheckError(
                 f"{run.scene.name}: the bead starts with {speed:g} rad/s; found a swing for what "
-                "is let go from rest alone: leave speed_rad_s out"
+                "is in free motion from rest alone: leave speed_rad_s out"
             )
 
     def truth(self, run: Planned) -> Truth:

@@ -1,4 +1,4 @@
-"""A hard case: a bead that is let go ever nearer to the top of its wire, where a swing lasts."""
+"""A hard case: a bead that is free ever nearer to the top of its wire, where a swing lasts."""
 
 import math
 from dataclasses import replace

@@ -94,7 +94,7 @@ class FakeEngine:
         if self.refuses:
             raise EngineError(self.refuses)
         if drive not in self.drives:
-            raise EngineError(f"the fake engine was told to refuse drive {drive}")
+            raise EngineError(f"the fake engine was set to refuse drive {drive}")
         return FakeSession(self, scene, state.time_s, settings, dt_s)
 
 

@@ -202,8 +202,8 @@ def function_designs(
     if not proposals:
         raise special or CrankcheckError(
             f"no {task.mechanism} meets the {task.count} precision points with these starts and "
-            "ranges; change a start or leave it open, change a range or its sense, or ask for "
-            "fewer points"
+            "ranges; change a start or leave it open, change a range or its sense, or use fewer "
+            "points"
         )
     return proposals
 

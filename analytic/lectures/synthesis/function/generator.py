@@ -197,7 +197,7 @@ def _real_roots(polynomial: Array) -> list[float]:
 def _special() -> CrankcheckError:
     return CrankcheckError(
         "the precision points are so special that a whole family of mechanisms meets them, as with "
-        "an output in proportion to the input; ask for fewer points, or change a range"
+        "an output in proportion to the input; use fewer points, or change a range"
     )
 
 

@@ -268,7 +268,7 @@ def refuse_points(points: Sequence[complex], *, closed: bool, most: float = math
     count = len(points)
     if not LEAST <= count <= most:
         range_ = f"{LEAST} to {most}" if math.isfinite(most) else f"{LEAST} or more"
-        raise CrankcheckError(f"a path of {count} points was asked for; give {range_} points")
+        raise CrankcheckError(f"a path of {count} points was requested; give {range_} points")
     places = np.array(points, dtype=np.complex128)
     if not np.isfinite(places).all():
         raise CrankcheckError("the points of a path have to be finite numbers [m]")

@@ -93,7 +93,7 @@ class SheetLog:
                 f"{self.log.source}: in its first row, t = {self.log.time_s[0]:.6g} s, "
                 f"{channel.name} (column {cut(channel.column)!r}) is "
                 f"{abs(float(worst.error(self.truth)[0])):.3g} {unit} off where {scene.name} has "
-                "it: it is of another scene, speed, start or unit; name its own, or count times "
+                "it: the log has another scene, speed, start or unit; name its own, or count times "
                 "from the start of the motion"
             )
 

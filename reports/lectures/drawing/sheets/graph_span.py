@@ -223,8 +223,8 @@ def refuse_released_elastic(scene: Scene, drawings: str, cure: str) -> None:
     """Refuse elastic links in free motion for ``drawings``. Raises CrankcheckError."""
     if scene.elastic:
         raise CrankcheckError(
-            f"{scene.name}: {few(scene.elastic, 4)} bends or stretches and is let go, and "
-            f"{drawings} are those of rigid links; {cure}"
+            f"{scene.name}: {few(scene.elastic, 4)} is elastic and in free motion, and {drawings} "
+            f"are those of rigid links; {cure}"
         )
 
 
@@ -233,12 +233,12 @@ def _let_go(scene: Scene, name: str, over: Over, duration_s: float | None) -> Gr
     refuse_released_elastic(scene, "graphs", f"{writes}, or take [elastic] out of the scene")
     if duration_s is None:
         raise CrankcheckError(
-            f"{scene.name}: it is let go, and has no period to draw; say for how long: --duration "
-            "SECONDS"
+            f"{scene.name}: free motion has no period to draw; give --duration SECONDS"
         )
     if over == "angle":
         raise CrankcheckError(
-            f"--over angle: {scene.name} is let go, and its driver may turn back; use --over time"
+            f"--over angle: {scene.name} is in free motion, and its driver may turn back; use "
+            "--over time"
         )
     if not (math.isfinite(duration_s) and duration_s > 0.0):
         raise CrankcheckError(f"--duration {duration_s:g}: give seconds above 0")

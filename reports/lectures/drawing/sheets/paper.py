@@ -81,8 +81,8 @@ class Paper:
         match = re.fullmatch(r"(\d+(?:\.\d+)?)x(\d+(?:\.\d+)?)", text)
         if text.upper() not in SIZES and match is None:
             raise CrankcheckError(
-                f"--paper {told}: no size; use {', '.join(SIZES)}, or WIDTHxHEIGHT in mm, such as "
-                "297x210"
+                f"--paper {told}: unknown size; use {', '.join(SIZES)}, or WIDTHxHEIGHT in mm, "
+                "such as 297x210"
             )
         width, height = SIZES.get(text.upper()) or (float(match[1]), float(match[2]))  # type: ignore[index]  # checked above
         if width < LEAST_MM[0] or height < LEAST_MM[1] or max(width, height) > MOST_MM:
@@ -243,7 +243,7 @@ class Canvas:
         return next(axes for axes in self.layers if axes.get_gid() == f"layer-{name}")
 
     def saved(self, kind: str, title: str) -> bytes:
-        """The file of the sheet, of a kind in `reports.figures.style.FORMATS`."""
+        """The file of the sheet, of a kind in `reports.figures.layout.DOTS_PER_IN`."""
         raw = saved(self.figure, kind, title)
         return _layered(raw.decode()).encode() if kind == "svg" else raw
 

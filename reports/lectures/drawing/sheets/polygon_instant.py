@@ -56,8 +56,8 @@ def placed_at_angle(
         return PlacedMechanism.of(scene, DriverState(angle_at(at_deg), omega))
     if scene.is_free:
         raise CrankcheckError(
-            f"{scene.name}: its driver is let go, and no law says how fast it is at {at_deg:g} "
-            "deg; give --at-s for an instant of its motion, or --omega"
+            f"{scene.name}: its driver is in free motion, and no law says how fast it is at "
+            f"{at_deg:g} deg; give --at-s for an instant of its motion, or --omega"
         )
     return PlacedMechanism.of(scene, DriverState(*driver_at(scene, at_deg)))
 
@@ -89,8 +89,8 @@ def _motion_at(scene: Scene, time_s: float) -> Motion:
     own_s = scene.driver.law.period_s
     if time_s > MOST_PERIODS * own_s:
         raise CrankcheckError(
-            f"--at-s {time_s:g}: {scene.name} is let go, and its motion from t = 0 to there takes "
-            f"too long to find; give a time up to {MOST_PERIODS * own_s:.6g} s, {MOST_PERIODS:g} "
+            f"--at-s {time_s:g}: the free motion of {scene.name} from t = 0 to there takes too "
+            f"long to compute; give a time up to {MOST_PERIODS * own_s:.6g} s, {MOST_PERIODS:g} "
             "times its own duration"
         )
     lasts_s = max(time_s, LOOK * own_s)

@@ -51,7 +51,7 @@ def write_inputs(book: Workbook, table: formulas.FormulaTable) -> None:
     """Write the sheet of inputs, one a row: name, value, unit, meaning, and its name in formulas;
     below them the outcome of the table of columns."""
     sheet = book.create_sheet(INPUTS)
-    sheet.append(["name", "value", "unit", "what it is", "in formulas"])
+    sheet.append(["name", "value", "unit", "meaning", "in formulas"])
     for row, each in enumerate(table.inputs, 2):
         name = cell_name(each.name)
         sheet.append([each.name, each.value, each.unit or None, each.told, name])

@@ -86,7 +86,7 @@ def run_family(scene: Scene, request: SolveOptions, console: Console) -> None:
     say_whole(console, told)
 
 
-NO_FAMILY = {"elastic": "has elastic links", "let go": "is let go"}
+NO_FAMILY = {"elastic": "has elastic links", "free": "is in free motion"}
 """Kinds of scenes without families, and the reasons."""
 
 

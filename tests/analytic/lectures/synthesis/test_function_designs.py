@@ -231,9 +231,9 @@ def refused(says: str, **changes: object) -> None:
 
 
 def test_what_is_no_task_is_refused() -> None:
-    refused("a precision point at x = 2.6 was asked for, outside", points=(1.1, 1.5, 2.6))
+    refused("a precision point at x = 2.6 was requested, outside", points=(1.1, 1.5, 2.6))
     refused("precision points 2 and 3 coincide", points=(1.1, 1.5, 1.5 + 1e-9))
-    refused("2 precision points were asked for", points=2)
+    refused("2 precision points were requested", points=2)
     refused("is constant from", function=GivenFunction.of_formula("2 + 0*x"))
     refused("not defined at x = -1", function=GivenFunction.of_formula("log(x)"), x_low=-1.0)
     refused("jumps at x = 1.5708", function=GivenFunction.of_formula("tan(x)"))

@@ -165,7 +165,7 @@ SQUARE = (0j, 1 + 0j, 1 + 1j, 1j)
 @pytest.mark.parametrize(
     ("ask", "told"),
     [
-        (lambda: PathTask(SQUARE[:3]), "path of 3 points was asked for; give 4 to 50"),
+        (lambda: PathTask(SQUARE[:3]), "path of 3 points was requested; give 4 to 50"),
         (lambda: PathTask(tuple(complex(k, k**2) for k in range(51))), "path of 51 points"),
         (lambda: PathTask((*SQUARE, 1j)), "points 4 and 5 of the path coincide"),
         (lambda: PathTask((*SQUARE, 0j), closed=True), "lists its first point once"),

@@ -76,7 +76,7 @@ def test_the_segments_are_told_of_the_engine_and_the_phase_is_the_beams(checked:
     (told,) = (finding.text for finding in checked.findings if finding.rule == "CC134")
     assert "the segments end before the engine" in told
     assert checked.errors.worst("geometry") is None
-    assert "no geometry: where links bend" in " ".join(checked.errors.notes)
+    assert "no geometry: the driver's angle" in " ".join(checked.errors.notes)
     row = cell_row(checked)
     assert row["place_pure"] == row["deflection_pure"]
     limits_of = ("phase_limit_pure", "energy_limit_pure", "segments_limit_pure", "sensitivity")
@@ -128,7 +128,7 @@ def test_a_truth_that_is_in_doubt_ends() -> None:
     assert 0.0 < doubted.truth.known_s < LASTS_S[PULSE]
     found = check(doubted)
     assert found.errors.of_motion.left_out > 0
-    assert "the truth ends" in " ".join(found.errors.notes)
+    assert "the reference ends" in " ".join(found.errors.notes)
 
 
 @pytest.mark.parametrize(("name", "lasts_s"), [(PULSE, LASTS_S[PULSE]), (CONTROLLED, 0.01)])
@@ -145,7 +145,7 @@ def test_what_rings_is_let_go_for_a_few_swings_of_it_unless_more_is_asked_for() 
     assert few_swings_s(own) == pytest.approx(1.0)
     dt_s, steps = counted_released(own, None, None, 16, "plain")
     assert dt_s * steps == pytest.approx(1.0)
-    assert "let go for 1 s of its 5 s, 5 swings" in shortened_note(own, dt_s * steps)
+    assert "free motion for 1 s of its 5 s, 5 swings" in shortened_note(own, dt_s * steps)
     assert counted_released(own, 1e-4, 2.0, 16, "plain") == (1e-4, 20_000)
     assert shortened_note(own, 2.0) == shortened_note(own, 0.3) == ""
     rigid = load_scene("fourbar-pulse")

@@ -129,7 +129,7 @@ def test_the_book_s_scale_draws_vectors_k_times_the_crank_where_the_paper_has_ro
 
 def test_paper_that_is_none_or_without_room_is_refused() -> None:
     for paper, told in (
-        ("A7", "no size; use A5, A4"),
+        ("A7", "unknown size; use A5, A4"),
         ("100x50", "needs 180 x 120 mm"),
         ("nanx1", "no size"),
         ("99999x99999", "at most 2000 mm"),
