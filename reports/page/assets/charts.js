@@ -6,7 +6,7 @@ crankcheck.escaped = (text) =>
   String(text).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
 
 /** Text broken into lines of some characters, for labels. */
-crankcheck.folded = (text, width = 58) => {
+crankcheck.folded = (text, width = Math.min(58, innerWidth / 11)) => {
   const lines = [""];
   for (const word of String(text).split(" ")) {
     if (lines.at(-1) && lines.at(-1).length + word.length > width) lines.push("");

@@ -79,12 +79,9 @@
     small();
   };
   const [target, advice] = ["advice-target", "advice"].map((id) => document.getElementById(id));
-  const advise = () => {
+  target.addEventListener("change", () => {
     for (const row of advice.tBodies[0].rows) row.hidden = row.dataset.target !== target.value;
-  };
-  advice.classList.add("of-one-scene");
-  target.addEventListener("change", advise);
-  advise();
+  });
   scene.addEventListener("change", draw);
   cost.addEventListener("change", draw);
   filled.addEventListener("change", draw);

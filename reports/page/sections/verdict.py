@@ -60,13 +60,15 @@ def build(report: Report) -> Section:
     kinds = sorted((line.kind for line in report.lines), key=lambda kind: kind.stands)
     chosen = () if report.driven is None else report.driven.recommendations
     gated = report.cells[report.cells["gated"]]
+    advice = [] if report.driven is None else recommended(report.driven)
+    reached = {one.target for one in chosen if not one.reason} or {ASKED}
     return Section(
         anchor="verdict",
         title="Verdict",
         template="verdict.html",
         words={
-            "advice": [] if report.driven is None else recommended(report.driven),
-            "first": ASKED,
+            "advice": advice,
+            "first": ASKED if ASKED in reached else min(reached),
             "moves": report.driven is not None and any(report.driven.scenes.values()),
             "verdict": verdict(gated),
             "level": level(gated),

@@ -143,6 +143,7 @@ def test_a_cell_of_a_table_leads_to_what_is_known_of_it(
     page.locator("#provenance details", has_text="cells as a table").locator("> summary").click()
     rows = page.locator("#cells tr", has_text="fourbar-lecture-1")
     rows.locator("a", has_text="no bias").nth(1).click()
+    page.evaluate("() => document.querySelectorAll('details').forEach(d => { d.open = false; })")
     assert page.input_value("#motion-scene") == "fourbar-lecture-1"
     assert page.input_value("#motion-steps") == "180"
     cells = small.cells
@@ -279,6 +280,17 @@ def test_hostile_text_does_nothing(wide: Tab, evil_page: Path) -> None:
     page = wide.open(evil_page, *SECTIONS).page
     page.evaluate(HOVER, 2)
     wide.hostile_text_does_nothing("#provenance")
+
+
+def test_a_label_is_not_cut_on_a_phone(phone: Tab, small_page: Path) -> None:
+    page = phone.visit(small_page, *SECTIONS).page
+    for curve in (1, 3, 4):
+        page.evaluate(HOVER, curve)
+        label = page.locator("#precision-chart .hovertext")
+        label.wait_for()
+        box = box_of(label)
+        assert box["x"] >= 0.0
+        assert box["x"] + box["width"] <= 390.0
 
 
 def test_nothing_runs_out_of_a_phone(phone: Tab, small_page: Path) -> None:

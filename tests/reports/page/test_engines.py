@@ -36,7 +36,7 @@ def nine() -> Stored:
 @pytest.fixture(scope="module")
 def nine_page(nine: Stored, written: Write) -> Path:
     report = PageReport(nine)
-    names = ("engines", "verdict", "precision", "convergence", "stability")
+    names = ("verdict", "engines", "precision", "convergence", "stability")
     return written(render(report, [SECTIONS[name](report) for name in names]))
 
 
