@@ -66,7 +66,7 @@ def test_every_word_of_a_run_is_held_to_the_request(field: str) -> None:
     texts = not_asked_for(replace(done, **{field: FIELDS[field]}), asked, held, FOURBAR, state)
     assert texts
     word = "setting" if field in ("asked", "settings") else field
-    end = {"setting": "the run has none", "profile": "asked for 'tuned', the run has 'another'"}
+    end = {"setting": "the run has none", "profile": "requested 'tuned', the run has 'another'"}
     assert all(text.startswith(word) for text in texts), texts
     assert all(text.endswith(end.get(word, "")) for text in texts), texts
 
