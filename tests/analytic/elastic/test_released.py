@@ -131,7 +131,7 @@ KINKED = scene(
         (lambda: release_elastic(KINKED, 0.1, Modes(1)).at(np.zeros(1)),
          r"loads\.stop is not smooth over the motion"),
         (lambda: parse_scene(PULSE_TEXT.replace('"quasi-static"', '"periodic"'), "file.toml"),
-         'found "periodic" with a driver'),
+         'found "periodic" with a free driver'),
         (lambda: control_elastic(load_scene("fourbar-elastic"), 1.0), "driver is not controlled"),
         (lambda: released_under_control(load_scene("fourbar-elastic")), "driver is not controlled"),
     ],

@@ -121,7 +121,7 @@ def test_the_words_of_a_finer_run_are_held_to_the_request_too() -> None:
         return replace(done, version="3.0") if options["every"] > 1 else done
 
     found = said(cell(FOURBAR, "mujoco"), other)
-    assert all(f"finer run, dt / {parts}: version: asked for '" in found for parts in (2, 4))
+    assert all(f"finer run, dt / {parts}: version: requested '" in found for parts in (2, 4))
 
 
 def test_the_bodies_that_a_four_bar_moves_unevenly_are_all_but_its_crank() -> None:
