@@ -4,6 +4,7 @@
 #   make test         lint, types and tests
 #   make quick        the tests that reach what differs from main, or FILES="reports/page"
 #   make report       run the shipped study into out/, with its page, figures and summary
+#   make picture      draw the README picture anew after make engines: speed against error of each
 #   make hard         hard cases, graded, into out/hard
 #   make engines      install all engines that this system has, compare them in out/engines
 #   make slow         the long checks that `make test` leaves out
@@ -17,7 +18,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test lint pytest quick record browser report hard engines slow docs benchmarks models format clean
+.PHONY: verify test lint pytest quick record browser report picture hard engines slow docs benchmarks models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
@@ -60,6 +61,12 @@ report: $(VENV)/crankcheck
 	$(BIN)/crankcheck report out/study -o out/report.html
 	$(BIN)/crankcheck report out/study --format md -o out/summary.md
 	$(BIN)/crankcheck figures out/study -o out/figures
+
+picture: $(VENV)/crankcheck
+	$(BIN)/crankcheck sweep fourbar-lecture-1 --engine all --profile as-shipped --profile tuned \
+		--steps-per-turn 90,180,360,720,1440 --jobs 1 -o out/picture
+	$(BIN)/crankcheck figures out/picture --only work-precision --scene fourbar-lecture-1 \
+		--width-mm 140 --no-notes --format svg -o docs/images
 
 hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard

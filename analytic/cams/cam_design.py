@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.cams.contact_force import CamForces, FollowerLoad, LiftOff, contact_force, lift_off
-from analytic.cams.profile import corners, largest, touch, turn_of
+from analytic.cams.contact_force import CamForces, FollowerLoad, contact_force, lift_off
+from analytic.cams.profile import corners, largest, touch
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.cam_laws import CamLaw
@@ -32,8 +32,8 @@ def sharpest(cam: Cam) -> Extreme:
     """Return the largest convex curvature [1/m] of the pitch curve; for a flat face minus the least
     radius of curvature of the profile [m], which may pass 0 there."""
     if cam.follower.is_flat:
-        return largest(turn_of(cam), lambda phi: -touch(cam, phi).radius_m)
-    return largest(turn_of(cam), lambda phi: 1.0 / touch(cam, phi).pitch_radius_m)
+        return largest(cam.law.knots_rad, lambda phi: -touch(cam, phi).radius_m)
+    return largest(cam.law.knots_rad, lambda phi: 1.0 / touch(cam, phi).pitch_radius_m)
 
 
 def steepest(cam: Cam, *, rising: bool) -> Extreme:
@@ -45,7 +45,7 @@ def steepest(cam: Cam, *, rising: bool) -> Extreme:
         counts = (contact.lift.first >= 0.0) if rising else (contact.lift.first < 0.0)
         return np.where(counts, np.abs(contact.pressure_rad), 0.0)
 
-    return largest(turn_of(cam), quantity)
+    return largest(cam.law.knots_rad, quantity)
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def least_cam(
 
 def _starts(law: CamLaw, follower: Follower, above_m: float) -> Array:
     """Return starts of the follower to try, of growing base radius."""
-    top, flat = law.extremes(0)[1], follower.is_flat
+    top, flat = law.extremes[0][1], follower.is_flat
     if isinstance(follower, OscillatingFollower):
         size, share = follower.pivot_m, np.linspace(-1.0 if flat else 0.0, 1.0, LADDER)[1:-1]
         starts = ((0.5 if flat else 1.0) * math.pi - top) * share
@@ -173,12 +173,12 @@ class ExaminedCam:
     def _least_radius(self, sign: int) -> Extreme:
         if at_corners := corners(self.cam.law, sign):
             return 0.0, at_corners[0]
-        most, phi = largest(turn_of(self.cam), lambda at: sign / touch(self.cam, at).radius_m)
+        most, phi = largest(self.cam.law.knots_rad, lambda at: sign / touch(self.cam, at).radius_m)
         return (1.0 / most if most > 0.0 else math.inf), phi
 
     @cached_property
-    def lift_off(self) -> LiftOff | None:
-        """Speed at which the follower leaves; None without a load."""
+    def lift_off(self) -> Extreme | None:
+        """Speed [rad/s] at which the follower leaves; None without a load."""
         return None if self.load is None else lift_off(self.cam, self.load)
 
     def forces(self, phi: Array) -> CamForces:
@@ -188,7 +188,7 @@ class ExaminedCam:
 
     def force_range_n(self) -> tuple[float, float]:
         """Return the least and largest contact force over a turn [N], of a cam with a load."""
-        knots = turn_of(self.cam)
+        knots = self.cam.law.knots_rad
         least = -largest(knots, lambda phi: -self.forces(phi).contact_n)[0]
         return least, largest(knots, lambda phi: self.forces(phi).contact_n)[0]
 
@@ -196,11 +196,10 @@ class ExaminedCam:
     def exceeded(self) -> list[str]:
         """The limits that the cam does not keep, and contact that it loses, in words."""
         faults, limits, (radius, at) = [], self.limits, self.radii[0]
-        for part, limit, extreme in zip(
-            ("rise", "return"),
-            (limits.pressure_rad, limits.return_rad),
-            self.pressures,
-            strict=True,
+        rise, back = self.pressures
+        for part, limit, extreme in (
+            ("rise", limits.pressure_rad, rise),
+            ("return", limits.return_rad, back),
         ):
             if extreme[0] > limit * (1.0 + ROUNDING):
                 angle, phi, most = np.degrees([*extreme, limit])
@@ -213,9 +212,9 @@ class ExaminedCam:
                 f"convex radius of curvature: {radius:.6g} m at {math.degrees(at):.6g} deg, the "
                 f"least is {limits.least_m:.6g}"
             )
-        if self.lift_off is not None and self.lift_off.omega_rad_s <= self.speed_rad_s:
+        if self.lift_off is not None and self.lift_off[0] <= self.speed_rad_s:
             faults.append(
-                f"the follower leaves at {self.lift_off.omega_rad_s:.6g} rad/s, and the cam turns "
+                f"the follower leaves at {self.lift_off[0]:.6g} rad/s, and the cam turns "
                 f"with {self.speed_rad_s:.6g}"
             )
         return faults

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.cams.profile import corners, largest, touch, turn_of
+from analytic.cams.profile import corners, largest, touch
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene.cams import Cam, OscillatingFollower
@@ -29,7 +29,7 @@ class FollowerLoad:
     N m/rad, N m and N m about the pivot for one that oscillates.
 
     ``preload`` is the spring's at lift 0. ``weight`` presses on the cam; that of an oscillating
-    follower is weight cos(psi - weight_angle_rad). Raises CrankcheckError.
+    follower is weight cos(psi - weight_angle_rad).
     """
 
     inertia: float
@@ -37,14 +37,6 @@ class FollowerLoad:
     preload: float = 0.0
     weight: float = 0.0
     weight_angle_rad: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name, number in vars(self).items():
-            if not math.isfinite(number) or (number < 0.0 and name in ("inertia", "stiffness")):
-                raise CrankcheckError(
-                    f"{name} of the follower is {number:g}; give a finite number, and 0 or more of "
-                    "inertia and stiffness"
-                )
 
     def closing(self, cam: Cam, lift: Array) -> Array:
         """Return the generalised force of spring and weight towards the cam (T,)."""
@@ -62,13 +54,6 @@ class CamForces(NamedTuple):
     torque_nm: Array
 
 
-class LiftOff(NamedTuple):
-    """Speed of the cam [rad/s] at which its follower leaves, and where [rad]; infinite if never."""
-
-    omega_rad_s: float
-    phi_rad: float
-
-
 def contact_force(cam: Cam, load: FollowerLoad, omega_rad_s: float, phi: Array) -> CamForces:
     """Return contact force and driving torque at a constant speed. Raises CrankcheckError as
     `touch`."""
@@ -78,12 +63,13 @@ def contact_force(cam: Cam, load: FollowerLoad, omega_rad_s: float, phi: Array) 
     return CamForces(pressing / contact.lever, cam.sense * pressing * first)
 
 
-def lift_off(cam: Cam, load: FollowerLoad) -> LiftOff:
-    """Return the speed at which the follower leaves the cam, exactly.
+def lift_off(cam: Cam, load: FollowerLoad) -> tuple[float, float]:
+    """Return the speed of the cam [rad/s] at which its follower leaves, infinite if never, and
+    where [rad], exactly.
 
     Raises CrankcheckError for a follower that spring and weight do not close even at rest.
     """
-    least, where = largest(turn_of(cam), lambda phi: -load.closing(cam, cam.law.at(phi).value))
+    least, where = largest(cam.law.knots_rad, lambda phi: -load.closing(cam, cam.law.at(phi).value))
     if least >= 0.0:
         raise CrankcheckError(
             f"spring and weight close the follower with {-least:.6g} at "
@@ -91,11 +77,11 @@ def lift_off(cam: Cam, load: FollowerLoad) -> LiftOff:
             f"{load.preload + least:.6g}"
         )
     if load.inertia > 0.0 and (drops := corners(cam.law)):  # an impulse that nothing withstands
-        return LiftOff(0.0, drops[0])
+        return 0.0, drops[0]
 
     def lack(phi: Array) -> Array:
         lift = cam.law.at(phi)
         return np.asarray(-load.inertia * lift.second / load.closing(cam, lift.value))
 
-    most, phi = largest(turn_of(cam), lack)
-    return LiftOff(1.0 / math.sqrt(most) if most > 0.0 else math.inf, phi)
+    most, phi = largest(cam.law.knots_rad, lack)
+    return 1.0 / math.sqrt(most) if most > 0.0 else math.inf, phi

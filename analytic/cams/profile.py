@@ -67,10 +67,17 @@ def touch(cam: Cam, phi: Array) -> CamContact:
     Raises CrankcheckError where an oscillating flat face turns as fast as the cam, against it, or
     the follower swings through its dead position. Accurate to rounding over sin(psi).
     """
-    lift = cam.law.at(phi)
-    if isinstance(cam.follower, OscillatingFollower):
-        _refuse_dead(cam, lift.value)
-    return (_touch_face if cam.follower.is_flat else _touch_tip)(cam, phi, lift)
+    lift, flat = cam.law.at(phi), cam.follower.is_flat
+    psi, limit = cam.start + lift.value, 0.5 * np.pi if flat else np.pi
+    if isinstance(cam.follower, OscillatingFollower) and (
+        psi.min() <= -limit * flat or psi.max() >= limit  # where a lift has no force
+    ):
+        low, high = np.degrees([psi.min(), psi.max()])
+        raise CrankcheckError(
+            f"psi of the follower goes from {low:.6g} to {high:.6g} deg; its dead positions are at "
+            f"{'-90 and 90' if flat else '0 and 180'}: give another base radius, arm or stroke"
+        )
+    return (_touch_face if flat else _touch_tip)(cam, phi, lift)
 
 
 def _touch_tip(cam: Cam, phi: Array, lift: CamLift) -> CamContact:
@@ -126,18 +133,6 @@ def _touch_face(cam: Cam, phi: Array, lift: CamLift) -> CamContact:
     return CamContact(phi, sense, lift, contact, normal, None, pressure, radius, radius, lever)
 
 
-def _refuse_dead(cam: Cam, lift: Array) -> None:
-    """Refuse psi beyond 0 and 180 degrees, or 90 of a flat face, where a lift has no force."""
-    psi, limit = cam.start + lift, 0.5 * np.pi if cam.follower.is_flat else np.pi
-    if psi.min() <= -limit * cam.follower.is_flat or psi.max() >= limit:
-        low, high = np.degrees([psi.min(), psi.max()])
-        raise CrankcheckError(
-            f"psi of the follower goes from {low:.6g} to {high:.6g} deg; its dead positions are at "
-            f"{'-90 and 90' if cam.follower.is_flat else '0 and 180'}: give another base radius, "
-            "arm or stroke"
-        )
-
-
 def largest(knots: Sequence[float], quantity: Callable[[Array], Array]) -> tuple[float, float]:
     """Return the largest value of a quantity of one argument, and that argument.
 
@@ -171,11 +166,6 @@ def largest(knots: Sequence[float], quantity: Callable[[Array], Array]) -> tuple
             np.minimum(low + (centre + 1) * step, high),
         )
     return found
-
-
-def turn_of(cam: Cam) -> tuple[float, ...]:
-    """Return the knots of its law over one turn, both ends with them [rad]."""
-    return (*cam.law.knots_rad, math.tau)
 
 
 def corners(law: CamLaw, sign: int = 1) -> list[float]:

@@ -8,15 +8,14 @@ the carrier, gets less by the efficiency eta of the mesh:
     gear 0 drives: (z0, eta s z1, -(z0 + eta s z1))      gear 1 drives: with 1/eta
 
 Which gear drives follows from the loads, and these from who drives: found by trial, all choices if
-need be. Source: Mueller, Epicyclic Drive Trains (1982): rolling power,
-self-locking.
+need be. Source: Mueller, Epicyclic Drive Trains (1982): rolling power, self-locking.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
+from itertools import islice, product
 
 import numpy as np
 
@@ -25,8 +24,8 @@ from models.errors import CrankcheckError
 from models.scene import GROUND
 from models.scene.pairs import Gear
 
-MOST_TRIED = 12
-"""Pairs with losses of which all choices of the driving gear are tried."""
+MOST_TRIED = 4096
+"""Choices of the driving gears, two of each pair with losses, that are tried."""
 NOTHING = 1e-12
 """Power of a mesh, over the largest, that counts as none."""
 
@@ -103,7 +102,9 @@ def torques(train: Train, inputs: Mapping[str, float], loads: Mapping[str, float
             why = "closes the balance" if body in closing else "is no moving body of the train"
             raise CrankcheckError(f"torque on {body}: it {why}; use {', '.join(open_bodies)}")
     seen: set[tuple[int, ...]] = set()
-    for drives in _choices(train):
+    # Who drives by pair: 1 the first gear, -1 the second, 0 without losses.
+    choices = product(*((1, -1) if gear.efficiency < 1.0 else (0,) for gear in train.gears))
+    for drives in islice(choices, MOST_TRIED):
         way = drives
         while way not in seen:  # the driving gears of the last loads are the next choice
             seen.add(way)
@@ -117,17 +118,6 @@ def torques(train: Train, inputs: Mapping[str, float], loads: Mapping[str, float
         f"{' and '.join(closing)} keeps it moving at these speeds against these loads; drive it at "
         "another body, turn it the other way, or raise the efficiency of its pairs"
     )
-
-
-def _choices(train: Train) -> Iterator[tuple[int, ...]]:
-    """Yield who drives by pair: 1 the first gear, -1 the second, 0 without losses."""
-    loses = [gear.efficiency < 1.0 for gear in train.gears]
-    if not any(loses):
-        yield (0,) * len(loses)
-        return
-    yield tuple(map(int, loses))
-    if sum(loses) <= MOST_TRIED:
-        yield from product(*((1, -1) if one else (0,) for one in loses))
 
 
 def _balanced(

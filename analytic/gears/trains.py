@@ -38,7 +38,11 @@ class Train:
     def __post_init__(self) -> None:
         if not self.gears:
             raise CrankcheckError("a gear train has one pair of gears or more; found none")
-        if locked := self._locked():
+        locked = self.gears if _lock(self.gears) else ()
+        for gear in locked:  # as few as lock each other: without any one of them they move
+            without = tuple(each for each in locked if each is not gear)
+            locked = without if _lock(without) else locked
+        if locked:
             names = few((gear.name for gear in locked), LISTED)
             moves = "" if self.mobility else ", and the train does not move"
             raise CrankcheckError(
@@ -107,14 +111,6 @@ class Train:
             body: float(sum(x * u for x, u in zip(row, given, strict=True)))
             for body, row in coefficients.items()
         }
-
-    def _locked(self) -> Sequence[Gear]:
-        """Return pairs that lock each other, as few as do: without any one of them they move."""
-        least = self.gears if _lock(self.gears) else ()
-        for gear in least:
-            without = tuple(each for each in least if each is not gear)
-            least = without if _lock(without) else least
-        return least
 
 
 def _lock(gears: Sequence[Gear]) -> bool:

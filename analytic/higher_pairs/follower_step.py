@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.cams.cam_design import refuse_undercut
-from analytic.cams.profile import turn_of
 from analytic.dyads.chunk import SINES, Chunk
 from analytic.dyads.parts import SlideError, Sliding
 from analytic.dyads.plane import EPS, AngleError, BodyKinematics, Real, Vec
@@ -107,8 +106,8 @@ def lift_errors(pair: CamPair, cam: BodyKinematics, carrier: BodyKinematics) -> 
     law, one, other = pair.profile.law, angle_of(cam), angle_of(carrier)
     off = cam.error.theta + carrier.error.theta
     off = off + 3 * EPS * (np.abs(one) + np.abs(other) + abs(pair.start_rad) + 7.0)
-    peaks = [max(map(abs, law.extremes(n))) for n in range(4)]
-    narrow = 0.5 * min(np.diff(turn_of(pair.profile)))
+    peaks = [max(map(abs, each)) for each in law.extremes]
+    narrow = 0.5 * min(np.diff(law.knots_rad))
     away = [np.zeros_like(off) for _ in range(3)]
     for jump in law.jumps:
         phi = pair.law_angle(one, other) - jump.angle_rad

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from functools import cached_property
 
 import numpy as np
 
@@ -34,19 +33,19 @@ class GearStep(PeriodicStep):
     ) -> None:
         self.train, self.leads, self.before = train, leads, tuple(before)
         self.key = f"gears {', '.join(gear.name for gear in train.gears)}"
-        self.scene = placed.scene
+        self.scene = scene = placed.scene
+        self._start = float(scene.driver.law.at(np.zeros(1))[0][0]) / driver_scale(scene)
         self._counted: dict[tuple[str, ...], Turns] = {}
         """By the keys of the change points that were known."""
-        radii = [
-            gear.radius_m(self.scene.points_of) for gear in train.gears if gear.carrier != GROUND
-        ]
-        self.firmness = min([*radii, self.scene.longest_m]) / self.scene.longest_m
+        at = scene.points_of
+        radii = [min(g.teeth) * g.slip_m(at) for g in train.gears if g.carrier != GROUND]
+        self.firmness = min([*radii, scene.longest_m]) / scene.longest_m
         """Least pitch radius on a moving carrier, over the longest link: a slip by the arc of a
         step turns a gear by the inverse of it."""
         known = placed.known
         self.links: list[tuple[str, str, str, Mapping[str, float], float]] = []
         for body, pin in zip(train.bodies, train.pins, strict=True):
-            holder = PlacedBodies(placed.scene, placed.structure, known).holder(pin)
+            holder = PlacedBodies(scene, placed.structure, known).holder(pin)
             shares = {name: float(share) for name, share in train.shares(body).items() if share}
             self.links.append((body, pin, holder, shares, train.phase_rad(body)))
             known |= {body}
@@ -61,13 +60,17 @@ class GearStep(PeriodicStep):
             alpha: Real = STEADY
             error = AngleError(SINES + EPS * abs(phase), 0.0, 0.0)
             for name, share in shares.items():
-                own = chunk.bodies[name]
+                own, size = chunk.bodies[name], abs(share)
                 theta = theta + share * angles[name]
                 omega = omega + share * own.omega
                 if own.alpha is not STEADY:
                     alpha = alpha + share * own.alpha
-                if own.error is not None:
-                    error = _more(error, own, abs(share), angles[name])
+                if (off := own.error) is not None:
+                    error = AngleError(
+                        error.theta + size * off.theta + 2 * EPS * size * np.abs(angles[name]),
+                        error.omega + size * off.omega + 2 * EPS * size * np.abs(own.omega),
+                        error.alpha + size * off.alpha + 2 * EPS * size * np.abs(own.alpha),
+                    )
             turn = Vec(np.cos(theta), np.sin(theta))
             bound = error if chunk.certified else None
             chunk.bodies[body] = BodyKinematics(local, anchor, turn, omega, alpha, bound, theta)
@@ -91,11 +94,6 @@ class GearStep(PeriodicStep):
             self._counted[tuple(own)] = found
         return found
 
-    @cached_property
-    def _start(self) -> float:
-        law = self.scene.driver.law
-        return float(law.at(np.zeros(1))[0][0]) / driver_scale(self.scene)
-
     def period(self, passages: Mapping[str, Passage], base: float) -> float | None:
         """Return the driver angle after which its links stand as at first [rad]; that of the known
         bodies where nothing hangs on it. Raises CrankcheckError for more than `MOST_TURNS`."""
@@ -118,13 +116,3 @@ class GearStep(PeriodicStep):
                 "with a simpler ratio"
             )
         return back
-
-
-def _more(error: AngleError, own: BodyKinematics, share: float, angle: Real) -> AngleError:
-    """Return the bounds of a sum with a share of a known angle and its rates added."""
-    assert own.error is not None
-    return AngleError(
-        error.theta + share * own.error.theta + 2 * EPS * share * np.abs(angle),
-        error.omega + share * own.error.omega + 2 * EPS * share * np.abs(own.omega),
-        error.alpha + share * own.error.alpha + 2 * EPS * share * np.abs(own.alpha),
-    )

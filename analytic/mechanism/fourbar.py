@@ -1,4 +1,4 @@
-r"""The four-bar in closed form: Grashof class, limits, transmission angle, swing, time ratio.
+r"""The four-bar in closed form: Grashof class, limits, transmission angle.
 
 Lengths by their place in the loop, as in the figure; the driver turns about A, the rocker about D::
 
@@ -9,7 +9,7 @@ Lengths by their place in the loop, as in the figure; the driver turns about A, 
       A ------- D
            d
 
-Source: R. L. Norton, Design of Machinery, chapters 2 (Grashof), 3 (time ratio) and 4 (limits).
+Source: R. L. Norton, Design of Machinery, chapters 2 (Grashof) and 4 (limits).
 
 A pin of a loop turns fully if the two links beside it can stand in line both ways. Of a four-bar a
 link turns fully against the others if s + l <= p + q; of a slider-crank (a crank r, a rod l, the
@@ -138,32 +138,6 @@ class FourBar:
         a, b, c, d = self.driver, self.coupler, self.rocker, self.ground
         near, far = max(abs(b - c), abs(a - d)), min(b + c, a + d)
         return _angle(b, c, near), _angle(b, c, far)
-
-    @property
-    def rocker_limits_rad(self) -> tuple[float, float]:
-        """Rocker's angles against DA at its two limits (crank and coupler in line) [rad].
-
-        Raises StructureError unless the driver is the crank of a crank-rocker.
-        """
-        self._require_crank()
-        a, b, c, d = self.driver, self.coupler, self.rocker, self.ground
-        return _angle(c, d, b - a), _angle(c, d, b + a)
-
-    @property
-    def time_ratio(self) -> float:
-        """Time of the slower stroke of the rocker over that of the quicker, at constant speed."""
-        self._require_crank()
-        a, b, c, d = self.driver, self.coupler, self.rocker, self.ground
-        # Crank angles of the limits: coupler drawn over the crank, and in line with it.
-        imbalance = abs(_angle(d, abs(b - a), c) - _angle(d, b + a, c))
-        return (math.pi + imbalance) / (math.pi - imbalance)
-
-    def _require_crank(self) -> None:
-        if self.grashof_class != "crank-rocker" or self.driver > self.rocker:
-            raise StructureError(
-                f"a {self.grashof_class} driven at its {self.driver:g} m link: rocker limits and "
-                "time ratio belong to a crank-rocker driven at its crank"
-            )
 
 
 def _angle(p: float, q: float, opposite: float) -> float:

@@ -10,13 +10,7 @@ from typing import Annotated
 from pydantic import Field, StrictInt, StringConstraints
 
 from models.errors import SceneError
-from models.files import (
-    body_table,
-    elastic_table,
-    pair_tables,
-    schema,
-    spring_table,
-)
+from models.files import body_table, elastic_table, pair_tables, schema, spring_table
 from models.files.driver_table import DriverTable, driver_of, driver_table, faults_of_driver
 from models.files.load_table import LoadTable, faults_of_loads, load_of, load_table
 from models.files.schema import MOST_BODIES, Coordinates, Name, Text

@@ -35,7 +35,7 @@ def pair_tendons(scene: Scene, tree: Tree) -> Iterator[str]:
             factors.update(dict.fromkeys(turning(tree, body)[0], factor))
         arm = gear.slip_m(scene.points_of)
         joints = {name: arm * count for name, count in factors.items() if count}
-        yield from _fixed(gear.joint, joints)
+        yield from _fixed(f"gear {gear.name}", joints)
     for relation in cam_relations(scene, tree):
         yield from _fixed(relation.name, {relation.cam: relation.reach})
         yield from _fixed(f"follower's {relation.name}", {relation.follower: 1.0})
@@ -52,8 +52,8 @@ def _fixed(name: str, joints: Mapping[str, float]) -> Iterator[str]:
 def equalities(scene: Scene, tree: Tree) -> Iterator[str]:
     """Write the equalities of cams, and those that keep the tendons of gears at their length.
     Raises EngineError for a cam or a follower that does not hang on its carrier in the tree."""
-    for gear in scene.gears.values():
-        yield f"    <tendon{attributes({'name': gear.joint, 'tendon1': gear.joint})}/>"
+    for gear in scene.gears:  # a scene's own names hold no space
+        yield f"    <tendon{attributes(dict.fromkeys(('name', 'tendon1'), f'gear {gear}'))}/>"
     for relation in cam_relations(scene, tree):
         row: AttributeRow = {"name": relation.name}
         row |= {"tendon1": f"follower's {relation.name}", "tendon2": relation.name}
@@ -71,7 +71,7 @@ def touching(scene: Scene, body: str, softness: Attributes) -> Iterator[str]:
         if body == pair.cam:
             ends = pairwise((*pair.outline, pair.outline[0]))
             rows = [{"fromto": (*a, 0.0, *b, 0.0), "size": shape.skin_m} for a, b in ends]
-        elif shape.is_flat:
+        elif pair.profile.follower.is_flat:
             (x, y), (ux, uy), half = shape.place, shape.away, shape.reach_m
             off = shape.skin_m + half
             rows = [{"type": "box", "pos": (x + off * ux, y + off * uy, 0.0), "size": 3 * (half,)}]
@@ -106,7 +106,7 @@ class CamRelation:
         )
         refs = {own.name: own.ref for limb in tree.limbs for own in limb.freedoms}
         self.cam_ref, self.follower_ref = refs[self.cam], refs[self.follower]
-        self.reach = max(map(abs, pair.profile.law.extremes(1)))
+        self.reach = max(map(abs, pair.profile.law.extremes[1]))
 
     def coefficients(self, at: float, ahead: float = 0.0) -> tuple[float, ...]:
         """Return MuJoCo's five coefficients of the parabola about a coordinate ``at`` of the cam;

@@ -34,10 +34,6 @@ class FollowerShape:
     skin_m: float
     reach_m: float
 
-    @property
-    def is_flat(self) -> bool:
-        return self.roller_m == 0.0
-
 
 def follower_shape(scene: Scene, pair: CamPair) -> FollowerShape:
     """Return the shape of the follower of a cam by contact. Raises EngineError for a follower

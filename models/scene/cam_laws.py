@@ -46,15 +46,6 @@ class Jump(NamedTuple):
     jerk: float
 
 
-class Peaks(NamedTuple):
-    """Largest magnitudes of the first three derivatives by the cam's angle; infinite where the
-    derivative before jumps."""
-
-    velocity: float
-    acceleration: float
-    jerk: float
-
-
 class _Piece(NamedTuple):
     """y = sum of c_k t^k + size sin(rate t + phase), t from -1 at ``start`` to 1 at the end."""
 
@@ -284,8 +275,8 @@ class CamLaw:
 
     @property
     def knots_rad(self) -> tuple[float, ...]:
-        """Angles at which the formula changes, from 0 on."""
-        return tuple(self._pieces[0][:-1].tolist())
+        """Angles at which the formula changes, from 0 to a turn."""
+        return tuple(self._pieces[0].tolist())
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
@@ -297,7 +288,7 @@ class CamLaw:
         for order, (end, begin) in enumerate(zip(ending, beginning, strict=True)):
             step = begin - np.roll(end, 1)
             rounding = 64 * np.finfo(float).eps * size / np.minimum(half, np.roll(half, 1)) ** order
-            largest = max(abs(x) for x in self.extremes(order))
+            largest = max(map(abs, self.extremes[order]))
             steps.append(np.where(np.abs(step) > np.maximum(SLACK * largest, rounding), step, 0.0))
         rows = np.array([ends[:-1], *steps]).T.tolist()
         return tuple(Jump(*row) for row in rows if any(row[1:]))
@@ -307,12 +298,9 @@ class CamLaw:
         """Number of the derivatives without a jump, in their order: 3 to the jerk, -1 for none."""
         return min((k for one in self.jumps for k in range(4) if one[1 + k]), default=4) - 1
 
-    def extremes(self, order: int) -> tuple[float, float]:
-        """Return the least and largest value of a derivative, exactly; 0 is the lift itself."""
-        return self._extremes[order]
-
     @cached_property  # bounds need them at every solution
-    def _extremes(self) -> tuple[tuple[float, float], ...]:
+    def extremes(self) -> tuple[tuple[float, float], ...]:
+        """Least and largest value of the lift and of each derivative, exactly."""
         return tuple(map(self._extremes_of, range(4)))
 
     def _extremes_of(self, order: int) -> tuple[float, float]:
@@ -334,18 +322,17 @@ class CamLaw:
     @property
     def stroke(self) -> float:
         """Difference of the largest and the least lift [m or rad]."""
-        low, high = self.extremes(0)
+        low, high = self.extremes[0]
         return high - low
 
-    def peaks(self) -> Peaks:
-        """Return the peaks over a turn."""
-        smooth = self.continuous
-        return Peaks(
-            *(max(map(abs, self.extremes(n))) if smooth >= n - 1 else math.inf for n in (1, 2, 3))
-        )
+    @property
+    def peaks(self) -> tuple[float, ...]:
+        """Largest magnitudes of the derivatives; infinite where the one before jumps."""
+        largest = [max(map(abs, each)) for each in self.extremes[1:]]
+        return tuple(x if self.continuous >= n else math.inf for n, x in enumerate(largest))
 
 
-def peak_factors(kind: str) -> Peaks:
+def peak_factors(kind: str) -> tuple[float, ...]:
     """Return C_v, C_a, C_j: the peaks of a rise of unit lift over unit span, between dwells."""
     rest = CamSegment("dwell", PI - 1.0)
-    return CamLaw((CamSegment(kind, 1.0, 1.0), rest, CamSegment(kind, 1.0, -1.0), rest)).peaks()
+    return CamLaw((CamSegment(kind, 1.0, 1.0), rest, CamSegment(kind, 1.0, -1.0), rest)).peaks

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
-from models.scene.cams import Cam, TranslatingFollower
+from models.scene.cams import TranslatingFollower
 from models.scene.driver import Released
 from models.scene.joints import turned
 from models.scene.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
@@ -229,11 +229,11 @@ def scaled(scene: Scene, factor: float) -> Scene:
         return replace(old, module_m=None if old.module_m is None else old.module_m * factor)
 
     def cam(old: CamPair) -> CamPair:
-        profile, follower = old.profile, old.profile.follower
-        lengths = {k: factor * v for k, v in vars(follower).items() if k.endswith("_m")}
-        law = profile.law if not old.slider else profile.law.scaled(factor)
-        grown = replace(follower, **lengths)
-        larger = Cam(law, profile.base_m * factor, grown, profile.sense)
+        profile, own = old.profile, vars(old.profile.follower)
+        lengths = {k: factor * v for k, v in own.items() if k.endswith("_m")}
+        law = profile.law.scaled(factor) if old.slider else profile.law
+        follower, base_m = replace(profile.follower, **lengths), profile.base_m * factor
+        larger = replace(profile, law=law, base_m=base_m, follower=follower)
         return replace(old, profile=larger, outline=())
 
     grown = {name: factor * by for name, by in scene.start.displacements_m.items()}

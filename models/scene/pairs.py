@@ -146,11 +146,6 @@ class Gear:
     phase_rad: float = 0.0
 
     @property
-    def joint(self) -> str:
-        """Its name among all joints; a scene's own names hold no space."""
-        return f"gear {self.name}"
-
-    @property
     def constant_rad(self) -> float:
         """The constant of its relation [rad]."""
         return self.second * self.phase_rad
@@ -183,10 +178,6 @@ class Gear:
         centre, a relation without a mesh. Raises ValueError as `pivots`."""
         found = 2.0 * self.distance_m(points) / abs(self.teeth[0] + self.second)
         return self.module_m if self.module_m is not None else found or None
-
-    def radius_m(self, points: Mapping[str, Points]) -> float:
-        """Return the smaller pitch radius [m], by `slip_m` where they have no mesh."""
-        return min(self.teeth) * self.slip_m(points)
 
     def slip_m(self, points: Mapping[str, Points]) -> float:
         """Return the slip of the pitch circles [m] at 1 of the relation: half the module; about

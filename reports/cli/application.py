@@ -172,7 +172,7 @@ def _typed(request: type[Request]) -> Callable[..., None]:
         _end_with(kind(**given))
 
     notes = get_type_hints(request, include_extras=True)
-    fields = dataclasses.fields(cast(Any, request))
+    fields = sorted(dataclasses.fields(cast(Any, request)), key=lambda each: bool(each.kw_only))
     parameters = [
         _parameter(field, notes[field.name])
         for field in fields

@@ -221,22 +221,19 @@ def law_jumps(scene: Scene, reference: Motion) -> tuple[float, float]:
 @shared
 def facets(scene: Scene, reference: Motion) -> FacetFacts | None:
     """Return the facts of the cams by contact, of the worst; None where there is none."""
-    found = [_facets(scene, pair, reference) for pair in scene.cams.values() if pair.facets]
+    found, pace = list[FacetFacts](), scene.pace_rad_s
+    for pair in (one for one in scene.cams.values() if one.facets):
+        follower = pair.profile.follower
+        centre = joints.local_point(scene, pair.cam, pair.pivots(scene.points_of)[0])
+        length, arm = scene.longest_m, scene.longest_m
+        if isinstance(follower, OscillatingFollower):
+            length, arm = 1.0, follower.arm_m or follower.pivot_m
+        radius = max(math.dist(centre, point) for point in pair.outline) / arm
+        side = math.tau / pair.facets
+        turning = _largest(np.abs(reference.links[pair.cam].omega)) / pace
+        press = _closing(scene, pair, reference) / (length * pace**2)
+        found.append(FacetFacts(side**2 / 8.0 * radius, side * radius * turning, press))
     return max(found, key=lambda one: one.sagitta, default=None)
-
-
-def _facets(scene: Scene, pair: CamPair, reference: Motion) -> FacetFacts:
-    """Return the facts of a cam."""
-    follower, pace = pair.profile.follower, scene.pace_rad_s
-    centre = joints.local_point(scene, pair.cam, pair.pivots(scene.points_of)[0])
-    length, arm = scene.longest_m, scene.longest_m
-    if isinstance(follower, OscillatingFollower):
-        length, arm = 1.0, follower.arm_m or follower.pivot_m
-    radius = max(math.dist(centre, point) for point in pair.outline) / arm
-    side = math.tau / pair.facets
-    turning = _largest(np.abs(reference.links[pair.cam].omega)) / pace
-    press = _closing(scene, pair, reference) / (length * pace**2)
-    return FacetFacts(side**2 / 8.0 * radius, side * radius * turning, press)
 
 
 def _closing(scene: Scene, pair: CamPair, reference: Motion) -> float:

@@ -169,11 +169,6 @@ def _count(axes: Axes, lines: Sequence[Line], period_s: float = 1.0) -> None:
     _ticks(axes, {period_s / n: f"{n:g}" for n in numbers})
 
 
-def _facets(axes: Axes, lines: Sequence[Line]) -> None:
-    """Set ticks at the numbers of facets of cams, on a share of a turn or of the period."""
-    _count(axes, lines, lines[0].period_s)
-
-
 def _time(axes: Axes, lines: Sequence[Line]) -> None:
     """Set ticks of an axis over steps of time at the ones that were run, as many as have room."""
     steps = {float(s) for line in lines for s in line.cells["dt_s"]}
@@ -232,5 +227,7 @@ class Over:
 OVER = {
     TURNS: Over(STEP, _upper, PER_TURN, _count, 0.0),
     SECONDS: Over(TIME, _time, TIME, _time, 1.0),
-    FACETS: Over(SIDES_OF, _facets, SIDES_OF, _count, 0.0),
+    FACETS: Over(
+        SIDES_OF, lambda axes, own: _count(axes, own, own[0].period_s), SIDES_OF, _count, 0.0
+    ),
 }

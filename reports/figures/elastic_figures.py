@@ -12,7 +12,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MultipleLocator
 
 from models.array import Array
 from models.scene import Scene, cut_links, laws
@@ -20,7 +19,8 @@ from models.scene.driver import Controlled
 from reports.describe.elastic_course import Apart, ElasticCourse
 from reports.drawing.moving import Magnified, magnification
 from reports.drawing.shape import MARGIN, box_of, colours_of, guide_direction, size_of_motion
-from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet
+from reports.figures.layout import LAYOUT
+from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet, spaced
 from reports.figures.style import INK, PAGE_IN, QUIET, SMALL, FigureSet, Look, note, shorten
 from reports.output.numbers import readable
 from reports.protocol import length, way
@@ -70,7 +70,7 @@ class CourseAxis:
         """Set limits and label of the axis, short numbers on the other, and a line at 0."""
         axes.set_xlim(float(self.values.min()), float(self.values.max()))
         if self.step:
-            axes.xaxis.set_major_locator(MultipleLocator(self.step))
+            spaced(axes, self.step)
         low, high = axes.get_ylim()
         if low <= 0.0 <= high:
             axes.axhline(0.0, color=QUIET, linewidth=0.5)
@@ -178,7 +178,7 @@ def _positions(course: ElasticCourse) -> Figure | None:
     low, high = box_of(scene, base)
     low, high = low + 0.5 * MARGIN * size, high - 0.5 * MARGIN * size
     panels = Panels(ROWS, COLUMNS, 1.0, 0.06, 0.06, 0.22, 0.06, between=(0.1, 0.22))
-    wide = (PAGE_IN - 0.12 - 2 * panels.between[0]) / COLUMNS
+    wide = (LAYOUT.get().across(PAGE_IN) - 0.12 - 2 * panels.between[0]) / COLUMNS
     height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 0.8, 3.0))
     colours = colours_of(scene)
     entries: list[tuple[Artist, str]] = [

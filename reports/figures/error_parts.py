@@ -11,12 +11,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from models.scene import Scene, driver
 from reports.drawing.moving import told_places
 from reports.figures.drawing import ends
-from reports.figures.sheet import corner_words, grid, tenfold
+from reports.figures.sheet import corner_words, grid, one_scale, spaced, tenfold
 from reports.figures.style import INK, Look, power_of_ten
 from reports.output.numbers import floor_words
 from reports.results.error_parts import ErrorParts, Split, split, worst_body
@@ -52,13 +52,18 @@ def draw(report: Report, name: str) -> Figure | None:
     labels = (driver.driver_axis(scene), f"error of {body.name} [unit in the panel]")
     drawn = {part for one in cells if one is not None for part in one.parts.curves}
     entries = [(Line2D([], [], **LOOKS[n][1]), LOOKS[n][0]) for n in LOOKS if n in drawn]
-    figure, axes = grid(titles, title, labels, entries, notes(report, lines), apart=True)
+    figure, axes = grid(titles, title, labels, entries, notes(report, lines))
+    shown = [(one, panel) for one, panel in zip(cells, axes, strict=True) if one is not None]
     for line, one, panel in zip(lines, cells, axes, strict=True):
         if one is None:
             panel.set(xticks=[], yticks=[])
             panel.text(0.5, 0.5, ends(line) or "no trace", ha="center", transform=panel.transAxes)
         else:
-            _panel(panel, one, scene, unit)
+            _panel(panel, one, scene)
+    one_scale([panel for _, panel in shown])
+    for one, panel in shown:
+        room = 0.16 + 0.1 * one.floor.count("\n")
+        corner_words(panel, room, f"[{power_of_ten(one.scale)} {unit}]", one.floor)
     return figure
 
 
@@ -90,15 +95,15 @@ def _cell(line: Line, parts: Split) -> ShownCell | None:
     return ShownCell(float(row["steps_per_turn"]), parts.cells[str(row["key"])], floor)
 
 
-def _panel(axes: Axes, cell: ShownCell, scene: Scene, unit: str) -> None:
+def _panel(axes: Axes, cell: ShownCell, scene: Scene) -> None:
     """Draw the curves of a cell over the driver's place, angles from the first turn on."""
     turn = told_places(scene, cell.parts.driver_rad)
     for name, curve in cell.parts.curves.items():
         axes.plot(turn, curve / cell.scale, **LOOKS[name][1])
     axes.set_xlim(float(turn.min()), float(turn.max()))
-    axes.xaxis.set_major_locator(MultipleLocator(90.0) if np.ptp(turn) > 180 else MaxNLocator(4))
-    axes.yaxis.set_major_locator(MaxNLocator(4))
+    if np.ptp(turn) > 180:
+        spaced(axes, 90.0)
+    else:
+        axes.xaxis.set_major_locator(MaxNLocator(4))
     if scene.driver.slider is None:
         axes.xaxis.set_major_formatter(FuncFormatter(lambda angle, _: f"{angle % 360:g}"))
-    room = 0.16 + 0.1 * cell.floor.count("\n")
-    corner_words(axes, room, f"[{power_of_ten(cell.scale)} {unit}]", cell.floor)

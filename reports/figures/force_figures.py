@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator, MultipleLocator
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from analytic.forces.virtual_power import ReducedMachine, reduced_machine
@@ -26,8 +26,18 @@ from reports.drawing.moving import goes_round
 from reports.drawing.shape import PATH_SAMPLES, Label, clear_of_locking, colours_of, place, turn_of
 from reports.figures import style
 from reports.figures.drawing import DASHES
+from reports.figures.layout import LAYOUT
 from reports.figures.mechanism import mechanism_at
-from reports.figures.sheet import Abscissa, Curve, LinePanel, Panels, line_figure, sheet
+from reports.figures.sheet import (
+    Abscissa,
+    Curve,
+    LinePanel,
+    Panels,
+    columns_of,
+    line_figure,
+    sheet,
+    spaced,
+)
 from reports.figures.style import FRONT, INK, QUIET, TINY, FigureSet, Look
 from reports.output.numbers import readable
 
@@ -59,7 +69,7 @@ class ForceTurn:
         axes.tick_params(labelbottom=labelled)
         style.shorten(axes)
         if self.label.endswith("[deg]"):
-            axes.xaxis.set_major_locator(MultipleLocator(60.0))
+            spaced(axes, 60.0)
 
     @property
     def has_forces(self) -> bool:
@@ -120,20 +130,21 @@ def _is_cyclic(scene: Scene, theta: Array) -> bool:
 COLUMNS = 3
 EVERY_DEG, NAMED_DEG = 30, 90
 """Angles of the driver with a dot, and angles with their number beside it."""
-ROOM = 0.12
-"""Room around a curve, over its size."""
+ROOM, NUMBER_IN = 0.12, 0.45
+"""Room around a curve, over its size, and room for a number under it [inch]."""
 
 
 def hodographs(turn: ForceTurn) -> Figure | None:
     """Draw polar diagrams, the way of the tip of each pin's reaction over a turn, drawn from one
-    point, a panel per pin, with equal axes each; None where there are no reactions."""
+    point, a panel per pin, all on one scale; None where there are no reactions."""
     pins = list(free_motion.acted_on(turn.acting))
     if not (pins and turn.has_forces):
         return None
-    columns = 2 if len(pins) == 4 else min(COLUMNS, len(pins))
+    columns = 2 if len(pins) == 4 else columns_of(len(pins), COLUMNS)
     rows = math.ceil(len(pins) / columns)
     left, right, across = 0.5, 0.1, 0.55
-    side = (style.PAGE_IN - left - right - across * (COLUMNS - 1)) / COLUMNS
+    page, most = LAYOUT.get().across(style.PAGE_IN), columns if LAYOUT.get().width_mm else COLUMNS
+    side = (page - left - right - across * (most - 1)) / most
     width = left + right + side * columns + across * (columns - 1)
     panels = Panels(rows, columns, side, left, right, 0.2, 0.36, (across, 0.52))
     title = f"Reactions of the pins: {turn.scene.name}"
@@ -144,35 +155,41 @@ def hodographs(turn: ForceTurn) -> Figure | None:
         entries.append((dot, words))
     figure, axes = sheet(width, panels, title, entries, turn.notes)
     colours = colours_of(turn.scene)
-    for (point, body, source, force), one in zip(pins, axes, strict=False):
+    boxes = [_box(force) for *_, force in pins]
+    size = max(float(np.max(high - low)) for low, high in boxes) or 1.0
+    for (point, body, source, force), box, one in zip(pins, boxes, axes, strict=False):
         words = f"{point}, of {source} on {body}" if source != "pin" else f"{point} on {body}"
         one.set_title(style.cut(words, side))
-        _panel(one, turn, force, colours.get(body, INK), side)
+        low = (box[0] + box[1]) / 2 - size * (0.5 + ROOM)
+        _panel(one, turn, force, colours.get(body, INK), low, size * (1.0 + 2 * ROOM), side)
     for one in axes[len(pins) :]:
         one.remove()
     return figure
 
 
-def _panel(axes: Axes, turn: ForceTurn, force: Array, colour: str, side: float) -> None:
-    """Draw the diagram of one reaction, (T, 2), in a square of ``side`` [inch]."""
-    there = force[np.isfinite(force).all(axis=1)]
-    every = np.vstack([there, [[0.0, 0.0]]])
-    low, high = every.min(axis=0), every.max(axis=0)
-    size = float(np.max(high - low)) or 1.0
-    middle, half = (low + high) / 2, size * (0.5 + ROOM)
-    axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
+def _box(force: Array) -> tuple[Array, Array]:
+    """The corners of a reaction (T, 2) and of no force."""
+    every = np.vstack([force[np.isfinite(force).all(axis=1)], [[0.0, 0.0]]])
+    return every.min(axis=0), every.max(axis=0)
+
+
+def _panel(
+    axes: Axes, turn: ForceTurn, force: Array, colour: str, low: Array, size: float, side: float
+) -> None:
+    """Draw the diagram of one reaction, (T, 2), from a corner ``low`` (2,) on, ``size`` wide and
+    high [N], in a square of ``side`` [inch]."""
+    axes.set(xlim=(low[0], low[0] + size), ylim=(low[1], low[1] + size))
     axes.set_aspect("equal", adjustable="box")
     axes.plot(*force.T, color=colour)
     axes.plot(0.0, 0.0, marker="+", color=INK, markersize=6.0, zorder=4)
-    axes.xaxis.set_major_locator(MaxNLocator(5))
+    axes.xaxis.set_major_locator(MaxNLocator(min(5, int(side / NUMBER_IN))))
     axes.yaxis.set_major_locator(MaxNLocator(5))
     axes.set_xlabel("x [N]")
     axes.set_ylabel("y [N]")
     dots = _dots(turn)
     if dots:
         axes.plot(*force[list(dots)].T, "o", color=colour, markersize=2.4, zorder=3)
-    per_n = side / (2 * half)
-    _numbers(axes, dots, force, middle - half, per_n, side)
+    _numbers(axes, dots, force, low, side / size, side)
 
 
 def _numbers(

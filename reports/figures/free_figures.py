@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
 
 from analytic.free.free_motion import FreeMotion
 from models.array import Array
@@ -16,7 +15,7 @@ from models.scene import Scene
 from reports.describe.with_forces import with_reactions
 from reports.figures import style
 from reports.figures.force_figures import reactions
-from reports.figures.sheet import ONE, LinePanel, line_figure, sheet
+from reports.figures.sheet import ONE, LinePanel, line_figure, sheet, spaced
 from reports.output.numbers import error_text
 
 LEAST, MOST, IN_A_TURN = 2401, 7201, 180
@@ -133,7 +132,7 @@ def _phase(course: FreeCourse) -> Figure:
     style.shorten(axes)
     if turning:
         axes.set_xlim(0.0, 360.0)
-        axes.xaxis.set_major_locator(MultipleLocator(60.0))
+        spaced(axes, 60.0)
     return figure
 
 

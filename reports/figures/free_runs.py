@@ -14,7 +14,7 @@ from reports.compare import free_facts, last_turn
 from reports.describe.facts import describe_law
 from reports.drawing.shape import true_motion
 from reports.figures.drawing import Mark, around, marks
-from reports.figures.sheet import Panels, corner_words, grid, sheet, tenfold
+from reports.figures.sheet import Panels, corner_words, grid, one_scale, sheet, tenfold
 from reports.figures.style import INK, PAGE_IN, Look, logarithmic, mark_zero, power_of_ten, shorten
 from reports.output.numbers import duration, short
 from reports.results.lines import named
@@ -153,7 +153,7 @@ def courses(report: Report, name: str) -> Figure | None:
     angle.set_ylabel(f"angle of {driver} [{unit}]")
     speed.set_ylabel("speed [rad/s]")
     phase.set_ylabel("error of angle / G [rad]")
-    phase.set_xlabel("time [s]; thick in the last panel: the largest error so far")
+    phase.set_xlabel("time [s]; thick: the largest error so far")
     for panel in (angle, speed, phase):
         panel.set_xlim(0.0, float(shown.time_s[-1]))
     for panel in (angle, speed):
@@ -164,8 +164,8 @@ def courses(report: Report, name: str) -> Figure | None:
 
 def energy_change(report: Report, name: str) -> Figure | None:
     """Draw the change of the energy of each run: as it is, and as means over windows, whose last
-    less the first is the drift. A panel for each, with its own scale; None where none has an
-    energy."""
+    less the first is the drift. A panel for each, in its own power of ten; None where none has
+    an energy."""
     shown = free_runs(report, name)
     runs = [run for run in shown.runs if run.energy is not None] if shown else []
     if shown is None or not runs:
@@ -177,7 +177,8 @@ def energy_change(report: Report, name: str) -> Figure | None:
     title = f"Change of energy over the largest kinetic energy: {name}, step {shown.steps}"
     labels = ("time [s]", "change of energy / largest kinetic energy")
     titles = [run.name for run in runs]
-    figure, axes = grid(titles, title, labels, entries, shown.notes, apart=True)
+    figure, axes = grid(titles, title, labels, entries, shown.notes)
+    corners = []
     for run, panel in zip(runs, axes, strict=True):
         assert run.energy is not None
         means = free_facts.window_means(shown.scene, run.time_s, run.energy)  # NaN at both ends
@@ -185,10 +186,12 @@ def energy_change(report: Report, name: str) -> Figure | None:
         panel.plot(run.time_s, run.energy / scale, color=run.mark.colour, **RAW)
         panel.plot(run.time_s, means / scale, color=run.mark.colour, **MEANS)
         panel.set_xlim(0.0, float(shown.time_s[-1]))
-        panel.yaxis.set_major_locator(MaxNLocator(4))
         known = means[np.isfinite(means)]
         drift = f"drift {short(float(known[-1] - known[0]))}" if known.size else ""
-        corner_words(panel, 0.18, f"[{power_of_ten(scale)}]", drift)
+        corners.append((f"[{power_of_ten(scale)}]", drift))
+    one_scale(axes)
+    for panel, words in zip(axes, corners, strict=True):
+        corner_words(panel, 0.18, *words)
     return figure
 
 

@@ -1,7 +1,6 @@
 """The mechanism of a scene in one position: links and points by name, and the paths of the points.
 
-It is drawn with the parts of `reports.drawing.gif`; only letters and names are placed anew, as a
-figure of a column's width has little room for them.
+It is drawn with the parts of `reports.figures.gif`.
 """
 
 from collections.abc import Sequence
@@ -16,10 +15,12 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene, driver
 from reports.describe.facts import describe_law
-from reports.drawing import force_arrows, gif
-from reports.drawing.shape import PATH_SAMPLES, Sheet, box_of, clearest, names, turn_of
+from reports.drawing import force_arrows
+from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of
+from reports.figures import gif
+from reports.figures.layout import LAYOUT
 from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, Look, width_in
+from reports.figures.style import COLUMN_IN, SMALL
 from reports.protocol.length import SECONDS, TURNS
 from reports.protocol.way import way_of
 from reports.results.overview import Report, facts_of
@@ -61,7 +62,7 @@ def mechanism_at(
     """Draw a scene at a sample of its path, within a box, with arrows of its forces if any."""
     low, high = box
     panels = Panels(top=0.05, right=0.1)
-    wide = COLUMN_IN - panels.left - panels.right
+    wide = LAYOUT.get().across(COLUMN_IN) - panels.left - panels.right
     height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 1.0, 4.0))
     figure, (axes,) = sheet(COLUMN_IN, replace(panels, height=height), title, [], notes)
     per_m = float(min(wide / (high[0] - low[0]), height / (high[1] - low[1])))
@@ -72,11 +73,7 @@ def mechanism_at(
         gif.draw_arrows(axes, arrows, path, at)
         gif.scale_bar(axes, arrows, box, SMALL)
         taken = [each.shaft for each in arrows.at(path, at)]
-    paper = Sheet(low, tuple((high - low) * per_m), per_m, 0.1 * scene.longest_m)
-    for each in names(scene, path, at, paper, _name_size, taken):
-        size, style = (SIZE, "normal") if each.is_point else (SMALL, "italic")
-        look: Look = {"size": size, "style": style, "ha": "center", "va": "center"}
-        axes.text(each.x, each.y, each.text, zorder=8, **look)
+    gif.write_names(axes, scene, path, at, box, per_m, taken)
     return figure
 
 
@@ -88,9 +85,3 @@ def _frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
     axes.xaxis.set_major_locator(
         MaxNLocator(min(max(int(room / NUMBER_IN), 1), 9), steps=[1, 2, 5, 10])
     )
-
-
-def _name_size(text: str, is_point: bool) -> tuple[float, float]:
-    """Return width and height of a text [inch]."""
-    points = SIZE if is_point else SMALL
-    return width_in(text, points), 0.75 * points / POINTS

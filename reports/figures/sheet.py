@@ -20,10 +20,12 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from models.array import Array
 from models.scene import Scene
 from reports.figures import style
+from reports.figures.layout import LAYOUT
 from reports.figures.style import SMALL, TINY, Look, cut, width_in
 
 EDGE = 0.04
@@ -70,6 +72,9 @@ def sheet(
 
     The legend has ``entries`` in ``columns`` (0: as many as have room).
     """
+    layout = LAYOUT.get()
+    width, title = layout.across(width), "" if layout.no_title else title
+    notes = () if layout.no_notes else notes
     room = width - 2 * EDGE
     widest = max((width_in(text) for _, text in entries), default=0.0) + HANDLE + GAP
     number = columns or max(1, min(int((room + GAP) / widest), len(entries) or 1))
@@ -77,7 +82,8 @@ def sheet(
     legend = in_rows * SMALL * 1.38 / style.POINTS + (0.05 if entries else 0.0)
     lines = [line for note in notes for line in folded(note, room)]
     foot = len(lines) * TINY * 1.25 / style.POINTS
-    head = style.LARGE * 1.5 / style.POINTS if title else 0.0
+    titles = style.wrapped(title, room, style.LARGE) if title else []
+    head = (0.3 * bool(titles) + 1.2 * len(titles)) * style.LARGE / style.POINTS
     across, down = panels.between
     inner = (width - panels.left - panels.right - across * (panels.columns - 1)) / panels.columns
     grid = panels.rows * panels.height + (panels.rows - 1) * down
@@ -89,19 +95,12 @@ def sheet(
         bottom = height - top - panels.height
         figure.add_axes((left / width, bottom / height, inner / width, panels.height / height))
     edge = EDGE / width
-    if title:
-        figure.text(
-            edge, 1 - EDGE / height, cut(title, room, style.LARGE), size=style.LARGE, va="top"
-        )
+    look: dict[str, Any] = {"size": style.LARGE, "va": "top", "linespacing": 1.2}
+    figure.text(edge, 1 - EDGE / height, "\n".join(titles), **look)
     if entries:
         _legend(figure, entries, number, (edge, (EDGE + foot + legend) / height), room)
     if lines:
-        look: dict[str, Any] = {
-            "size": TINY,
-            "color": style.QUIET,
-            "va": "bottom",
-            "linespacing": 1.25,
-        }
+        look = {"size": TINY, "color": style.QUIET, "va": "bottom", "linespacing": 1.25}
         figure.text(edge, EDGE / height, "\n".join(lines), **look)
     return figure, figure.axes
 
@@ -141,7 +140,8 @@ def folded(text: str, room: float, size: float = TINY) -> list[str]:
     return lines
 
 
-MOST_COLUMNS = 4
+MOST_COLUMNS, LEAST_COLUMN_IN, NUMBER_IN = 4, 1.6, 0.3
+"""Columns of panels, the least width of one, and that of a number under it [inch]."""
 
 
 def grid(
@@ -150,33 +150,28 @@ def grid(
     labels: tuple[str, str],
     entries: Entries,
     notes: Sequence[str],
-    apart: bool = False,
     height: float = 1.35,
 ) -> tuple[Figure, list[Axes]]:
-    """Return a page with a panel per name; ``labels`` are for the two axes.
-
-    Panels that are ``apart`` have numbers of their own on their vertical axes.
-    """
-    columns = min(MOST_COLUMNS, len(names))
+    """Return a page with a panel per name; ``labels`` are for the two axes of all panels."""
+    width = LAYOUT.get().across(style.PAGE_IN)
+    columns = columns_of(len(names), MOST_COLUMNS)
     rows = math.ceil(len(names) / columns)
     height *= 1.0 if columns > 2 else 1.5
-    across, down = 0.28 if apart else 0.12, 0.2
+    across = down = 0.2
     upright = folded(labels[1], rows * height + (rows - 1) * down, style.SIZE)
     left = 0.35 + 0.115 * len(upright)
     panels = Panels(rows, columns, height, left, 0.1, 0.16, 0.31, (across, down))
-    figure, axes = sheet(style.PAGE_IN, panels, title, entries, notes)
+    figure, axes = sheet(width, panels, title, entries, notes)
     box = axes[0].get_position()
     for at, (name, one) in enumerate(zip(names, axes, strict=False)):
-        one.set_title(cut(name, box.width * style.PAGE_IN, SMALL))
-        one.tick_params(
-            labelbottom=at + columns >= len(names), labelleft=apart or at % columns == 0
-        )
+        one.set_title(cut(name, box.width * width, SMALL))
+        one.tick_params(labelbottom=at + columns >= len(names), labelleft=at % columns == 0)
     low, right = axes[-1].get_position().y0, axes[columns - 1].get_position().x1
     under = low - 0.15 / figure.get_figheight()
     figure.text((box.x0 + right) / 2, under, labels[0], ha="center", va="top")
     middle = (low + box.y1) / 2
     words: Look = {"rotation": 90, "va": "center", "multialignment": "center"}
-    figure.text(EDGE / style.PAGE_IN, middle, "\n".join(upright), **words)
+    figure.text(EDGE / width, middle, "\n".join(upright), **words)
     for one in axes[len(names) :]:
         one.remove()
     return figure, axes[: len(names)]
@@ -241,6 +236,28 @@ def line_figure(
         one.set_ylabel(panel.label)
         axis.mark(one, labelled=one is axes[-1])
     return figure, axes
+
+
+def columns_of(number: int, most: int) -> int:
+    """Return the columns of panels for which a page has room."""
+    return min(most, number, int(LAYOUT.get().across(style.PAGE_IN) / LEAST_COLUMN_IN))
+
+
+def one_scale(every: Sequence[Axes]) -> None:
+    """Set the vertical axes of panels to the limits that all of them need."""
+    low, high = zip(*(axes.get_ylim() for axes in every), strict=True)
+    for axes in every:
+        axes.set_ylim(min(low), max(high))
+        axes.yaxis.set_major_locator(MaxNLocator(5))
+
+
+def spaced(axes: Axes, step: float) -> None:
+    """Set ticks of the horizontal axis at multiples of a step, or of a multiple that has room."""
+    low, high = axes.get_xlim()
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    room = axes.get_position().width * figure.get_figwidth() / NUMBER_IN
+    axes.xaxis.set_major_locator(MultipleLocator(step * math.ceil((high - low) / step / room)))
 
 
 def tenfold(largest: float) -> float:

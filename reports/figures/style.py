@@ -1,6 +1,6 @@
 """Look of all figures (type, lines and sizes of a paper), and sets of figures as files of a folder.
 
-Text stays text in both formats.
+Text stays text in SVG and PDF.
 """
 
 import base64
@@ -9,7 +9,7 @@ import logging
 import math
 import re
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
@@ -33,6 +33,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullForma
 from models.array import Array
 from models.scene import Scene
 from reports.describe.facts import describe_law
+from reports.figures.layout import DOTS_PER_IN, FONT, LAYOUT
 from reports.output.numbers import count
 from reports.output.write import clean, crankcheck_version, write
 
@@ -41,8 +42,6 @@ Look = dict[str, Any]
 COLUMN_IN, PAGE_IN = 3.4, 7.0
 """Widths of a column and of a page of two [inch]."""
 POINTS = 72.0
-FONT = "DejaVu Sans"
-"""Font of matplotlib: a figure looks the same wherever it is drawn."""
 LARGE, SIZE, SMALL, TINY = 8.0, 7.0, 6.0, 4.6
 """Type of titles, of labels, of ticks and legends, and of the notes under a figure [point]."""
 INK, QUIET, FRONT = "#1a1a1a", "#6b6b6b", "#d2d2d2"
@@ -86,8 +85,10 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 @contextmanager
 def styled() -> Iterator[None]:
     """Draw and write figures in the style within this context; nothing outside changes."""
+    fonts = LAYOUT.get().fonts
+    own = RC | {"font.family": fonts} if len(fonts) > 1 else RC
     with (
-        rc_context(RC),  # type: ignore[arg-type]  # the names are matplotlib's, the values ours
+        rc_context(own),  # type: ignore[arg-type]  # the names are matplotlib's, the values ours
         warnings.catch_warnings(),
     ):
         # A name may have letters that the font lacks: in an SVG they are another font's.
@@ -95,10 +96,14 @@ def styled() -> Iterator[None]:
         yield
 
 
-@lru_cache(maxsize=4096)
 def width_in(text: str, size: float = SMALL) -> float:
     """Return the width of a text [inch]."""
-    font = FontProperties(family=FONT, size=size)
+    return _width_in(text, size, LAYOUT.get().fonts)
+
+
+@lru_cache(maxsize=4096)
+def _width_in(text: str, size: float, fonts: Sequence[str]) -> float:
+    font = FontProperties(family=fonts, size=size)
     return float(text_to_path.get_text_width_height_descent(text, font, False)[0]) / POINTS
 
 
@@ -168,53 +173,58 @@ def shorten(axes: Axes) -> None:
     axes.yaxis.get_offset_text().set_fontsize(SMALL)
 
 
-FORMATS = ("svg", "pdf")
 Face = Literal["normal", "italic"]
 LETTERS = frozenset(map(chr, range(32, 127))) | frozenset("⁻⁰¹²³⁴⁵⁶⁷⁸⁹±…\N{MINUS SIGN}")
 """Letters in every file, so that most figures share the same cut of a font."""
 FACES: dict[Face, str] = {"normal": "", "italic": "italic"}
 """Styles of the font, and the sign in an SVG that needs them."""
+IDLE = re.compile(r' transform="rotate\(-0 [^"]*"|(?<=\n) +')
+"""Parts of an SVG by matplotlib that do nothing: turns by 0, and indents."""
 TEXT = re.compile(r"<text[^>]*>(.*?)</text>", re.DOTALL)
 
 
 def saved(figure: Figure, kind: str, title: str) -> bytes:
-    """Return the file of a figure, of a kind in `FORMATS`, without a date.
+    """Return the file of a figure, of a kind in `DOTS_PER_IN`, without a date.
 
     In an SVG all text is text, and the letters that it needs of its font go with it; in a PDF the
     fonts are TrueType (type 42), so that text can be searched and edited.
     """
-    undated = {"svg": "Date", "pdf": "CreationDate"}[kind]
+    undated = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}[kind]
+    facts = {"Title": clean(title), undated: None}
     buffer = io.BytesIO()
     with styled():
-        figure.savefig(buffer, format=kind, metadata={"Title": clean(title), undated: None})
+        figure.savefig(buffer, format=kind, metadata=facts, dpi=DOTS_PER_IN[kind])
     raw = buffer.getvalue()
     return _with_fonts(clean(raw.decode())).encode() if kind == "svg" else raw
 
 
 def _with_fonts(svg: str) -> str:
+    svg = IDLE.sub("", svg)
     texts = TEXT.findall(svg)
     letters = "".join(sorted(LETTERS.union(unescape("".join(texts))) - {"\n"}))
-    rules = "".join(_rule(style, letters) for style, sign in FACES.items() if sign in svg)
+    faces = [style for style, sign in FACES.items() if sign in svg]
+    fonts = LAYOUT.get().fonts
+    rules = "".join(_rule(font, style, letters) for font in fonts for style in faces)
     return svg.replace("<defs>", f'<defs>\n  <style type="text/css">{rules}</style>', 1)
 
 
-def _rule(style: Face, letters: str) -> str:
+def _rule(font: str, style: Face, letters: str) -> str:
     """Return the style sheet's rule for a face; its bytes are a WOFF file."""
-    code = base64.b64encode(_letters_of(style, letters)).decode()
+    code = base64.b64encode(_letters_of(font, style, letters)).decode()
     return (
-        f"@font-face{{font-family:'{FONT}';font-style:{style};"
+        f"@font-face{{font-family:'{font}';font-style:{style};"
         f"src:url(data:font/woff;base64,{code})}}"
     )
 
 
 @lru_cache(maxsize=64)
-def _letters_of(style: Face, letters: str) -> bytes:
+def _letters_of(family: str, style: Face, letters: str) -> bytes:
     """Return a face cut down to some letters, as a WOFF file."""
     logging.getLogger("fontTools.subset").setLevel(logging.ERROR)  # it tells of tables it drops
-    path = findfont(FontProperties(family=FONT, style=style))
+    path = findfont(FontProperties(family=family, style=style))
     options = Options()
     options.hinting, options.layout_features = False, []
-    with TTFont(path, recalcTimestamp=False) as font:
+    with TTFont(path, recalcTimestamp=False, fontNumber=0) as font:
         cutter = Subsetter(options)
         cutter.populate(text=letters)
         cutter.subset(font)
@@ -245,7 +255,7 @@ class FigureSet(Generic[Of]):
     @property
     def files(self) -> list[str]:
         """Names of all files that may be written."""
-        return [f"{name}.{kind}" for name in self.draws for kind in FORMATS]
+        return [f"{name}.{kind}" for name in self.draws for kind in LAYOUT.get().formats]
 
     def pictures(self, solved: Of) -> dict[str, bytes]:
         """Return the figures as SVG files by name."""
@@ -256,11 +266,10 @@ class FigureSet(Generic[Of]):
         names = []
         for name, figure in self._drawn(solved):
             names.append(name)
-            for kind in FORMATS:
+            for kind in LAYOUT.get().formats:
                 write(folder / f"{name}.{kind}", self._saved(solved, name, figure, kind))
-        kinds = " and ".join(f".{kind}" for kind in FORMATS)
         figures = count(len(names), "figure") + f" of {self.of}" * bool(self.of)
-        return f"{folder}: {figures}, each as {kinds}: {', '.join(names)}"
+        return f"{folder}: {figures}, each as {LAYOUT.get().in_words}: {', '.join(names)}"
 
     def _drawn(self, solved: Of) -> Iterator[tuple[str, Figure]]:
         for name, draw in self.draws.items():

@@ -1,35 +1,43 @@
 """Commands that show a scene as an engine has it: `export`, `recipe forces`, `view`; and
 `scenes`, the list of them."""
 
+from __future__ import annotations
+
 import math
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from rich.console import Console
 from rich.text import Text
 
 from analytic.cams.outline import outlined
 from analytic.structure import groups, mobility
-from models.errors import CrankcheckError, StructureError, harmless
+from models.errors import CrankcheckError, StructureError, harmless, shown
 from models.files.reading import KINEMATICS, find_scene, kinds, load_scene, shipped
 from models.mjcf.document import build
 from models.mjcf.options import exact
 from models.scene import Scene
 from reports.describe.facts import describe_law
 from reports.output.console import grid, put, say
+from reports.output.numbers import duration
 from reports.output.write import check_file, write
 from reports.plan.requirements import under_control
 from reports.plan.steps import MOST_STEPS
 from reports.protocol.way import way_of
 from reports.requests.options import SceneName, option, output_option
+from reports.requests.run import RunRequest
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 from sim.registry.offers import force_recipe, viewer
 from sim.run import check_steps
+
+if TYPE_CHECKING:
+    from reports.figures.gif import DrawnRun
 
 
 @dataclass(frozen=True)
@@ -104,6 +112,9 @@ class ViewRequest:
         Path | None, output_option("Draw into a .gif or .png in place of the viewer.")
     ] = None
     forces: Annotated[bool, "Draw the forces as arrows, into a file."] = False
+    engine: Annotated[str | None, "Draw its run beside the reference, into a file."] = None
+    profile: Annotated[str, "Profile of the engine."] = "as-shipped"
+    magnify: Annotated[str, "Factor of its errors, or auto: as far as one sees them."] = "auto"
 
     def run(self, console: Console, progress: Console) -> int:
         """Show a scene; the viewer draws no forces of ours, so that these go into a file.
@@ -115,21 +126,43 @@ class ViewRequest:
         if output is not None:
             check_file(output, "-o", PICTURES, inputs=read)
         scene = outlined(load_scene(self.scene))
-        if output is None and has_screen() and not self.forces:
+        if self.forces and self.engine:
+            raise CrankcheckError("--forces with --engine: a picture has one of them; leave one")
+        run = None if self.engine is None else self._run()
+        if output is None and has_screen() and not (self.forces or run):
             viewer()(*way_of(scene).opened(scene))
             return 0
         if output is None:
             output = Path(f"{scene.name}.gif")
             check_file(output, "view", PICTURES, inputs=read)
-            why = "forces are drawn" if self.forces else "no screen here, so"
-            console.print(f"{why} into a file:", style="dim")
-        from reports.drawing import gif as picture
+            why = "" if self.forces or run else "no screen here, so "
+            console.print(f"{why}drawn into a file:", style="dim")
+        from reports.figures import gif as picture
 
         draw = picture.strip if output.suffix.lower() == ".png" else picture.animation
-        content = draw(scene, with_forces=self.forces)
+        content = draw(scene, run, with_forces=self.forces)
         write(output, content)
         say(console, harmless(f"{output}: {scene.name} {way_of(scene).over}"))
         return 0
+
+    def _run(self) -> DrawnRun:
+        """The run of the engine to draw. Raises CrankcheckError."""
+        from reports.figures.gif import DrawnRun
+
+        factor = None if self.magnify == "auto" else _factor(self.magnify)
+        done = RunRequest(self.scene, self.engine, self.profile).answer()
+        if done.motion is None:
+            raise CrankcheckError(f"{done.scene}, {done.engine}: {done.status}: {done.reason}")
+        name = f"{done.engine} {done.version} {done.profile}, step {duration(done.dt_s)}"
+        return DrawnRun(done.motion, name, factor)
+
+
+def _factor(text: str) -> float:
+    """Parse a factor. Raises CrankcheckError for other text."""
+    with suppress(ValueError):
+        if 0.0 < (factor := float(text)) < math.inf:
+            return factor
+    raise CrankcheckError(f"--magnify: found {shown(text)}; give a number above 0, or auto")
 
 
 def has_screen() -> bool:

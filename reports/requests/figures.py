@@ -14,7 +14,8 @@ from rich.progress import track
 from models.errors import CrankcheckError, suggestion
 from models.files.schema import NAME
 from reports.figures.drawing import Drawing
-from reports.figures.style import FORMATS, saved, styled
+from reports.figures.layout import Layout, laid_out
+from reports.figures.style import saved, styled
 from reports.output.console import say_whole, tell
 from reports.output.numbers import count
 from reports.output.write import check_folder, write
@@ -34,12 +35,13 @@ Drawn = Callable[[], Figure | None]
 
 
 @dataclass(frozen=True)
-class FiguresRequest:
+class FiguresRequest(Layout):
     folder: Annotated[Path, argument("DIR", "Folder of a sweep.")]
     output: Annotated[Path, output_option("Folder for the figures.")]
     scene: Annotated[Sequence[str], "Scene to draw; may be repeated; all if none."] = ()
     only: Annotated[Sequence[str], option("Figure to draw; may be repeated.", "FIGURE")] = ()
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Draw the store in ``folder`` into ``output``; returns the exit code, 0.
 
@@ -55,7 +57,9 @@ class FiguresRequest:
         tell(stored.notice)
         report = Report(stored)
         figures = _planned(report, names, self.scene)
-        check_folder(self.output, "-o", [f"{name}.{kind}" for name in figures for kind in FORMATS])
+        check_folder(
+            self.output, "-o", [f"{name}.{kind}" for name in figures for kind in self.formats]
+        )
         empty = []
         quiet = not console.is_terminal
         for name in track(figures, "drawing", console=console, transient=True, disable=quiet):
@@ -64,12 +68,11 @@ class FiguresRequest:
             if figure is None:
                 empty.append(name)
                 continue
-            for kind in FORMATS:
+            for kind in self.formats:
                 write(self.output / f"{name}.{kind}", saved(figure, kind, f"crankcheck: {name}"))
         drawn = count(len(figures) - len(empty), "figure")
-        kinds = " and ".join(f".{kind}" for kind in FORMATS)
         lines = [
-            f"{self.output}: {drawn}, each as {kinds}",
+            f"{self.output}: {drawn}, each as {self.in_words}",
             *(f"  {x}: nothing to draw" for x in empty),
         ]
         say_whole(console, "\n".join(lines))

@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, get_type_hints
 import typer
 
 from models.errors import CrankcheckError, shown
+from reports.figures.layout import Layout
 
 
 def seconds(text: str) -> float:
@@ -117,7 +118,7 @@ def named(place: str) -> Any:
 
 
 @dataclass(frozen=True)
-class SolveOptions:
+class SolveOptions(Layout):
     """Options of `solve` for scenes of any kind."""
 
     answered_by: ClassVar[str] = "requests.solve:SolveRequest"

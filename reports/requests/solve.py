@@ -20,6 +20,7 @@ from models.motion import Motion
 from models.scene import Scene, laws
 from reports.describe.facts import MOST_DEG, driver_at
 from reports.describe.with_forces import with_forces
+from reports.figures.layout import laid_out
 from reports.output.formats import ENDINGS
 from reports.output.write import check_file
 from reports.requests import solving
@@ -149,6 +150,7 @@ def solve_driven(
 
 @dataclass(frozen=True)
 class SolveRequest(SolveOptions):
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write the reference. Raises CrankcheckError for a faulty request."""
         if self.output is not None:

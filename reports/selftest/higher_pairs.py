@@ -52,10 +52,6 @@ def _other_law(pair: CamPair, _: float) -> CamPair:
     return _profile(pair, law=CamLaw(tuple(parts)))
 
 
-def _fewer_facets(scene: Scene, share: float) -> Scene:
-    return outlined(scene, round(FACETS * (1.0 - share)))
-
-
 def _softer(scene: Scene, share: float) -> Scene:
     springs = {name: replace(own, rate=own.rate * (1.0 - share))
                for name, own in scene.springs.items()}  # fmt: skip
@@ -99,7 +95,8 @@ PAIRS = (
     _disc("contact-lost", "contact is lost for three samples",
           plant=fault.in_log(_lifted), size=1e-2, unit="of it"),
     fault.Fault("contact", "facets-few", "fewer facets than requested", "CC104",
-                fault.in_scene(_fewer_facets), 0.9, "of them", scenes=(FACE,),
+                fault.in_scene(lambda scene, share: outlined(scene, round(FACETS * (1.0 - share)))),
+                0.9, "of them", scenes=(FACE,),
                 needs=lambda name: engine(name).applies_cams_by_contact),
     fault.Fault("force", "spring-soft", "the spring of a follower is too soft", "CC123",
                 fault.in_scene(_softer), 2e-2, "of it", scenes=(FACE,),

@@ -1,7 +1,8 @@
 """Settings of a run: a profile's, overridden one by one; and engines that come with settings."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from types import ModuleType
+from typing import Any
 
 from models.errors import EngineError, nearest, shown
 from models.motion import State
@@ -97,27 +98,17 @@ def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:
     raise SettingError(f"setting {name}: found {shown(value)}; it takes {need}, such as {model!r}")
 
 
-class OwnSettings(Protocol):
-    """Module of the settings of a shipped engine."""
-
-    AS_SHIPPED: Profile
-    TUNED: Profile
-
-    @property
-    def checked(self) -> Callable[[Settings], None]: ...
-
-
 def shipped_engine(
-    own: OwnSettings,
+    own: ModuleType,
     version: str,
     session: Callable[[Scene, State, Settings, float, Drive], Session],
     *,
     of_states: bool = False,
     **more: Any,
 ) -> Engine:
-    """Declare an engine that comes with crankcheck: all apply loads, constant friction and springs.
-    It reports forces and accelerations ``of_states``, or else forces of steps alone; ``more`` are
-    other fields, by default without settings in seconds."""
+    """Declare an engine that comes with crankcheck, by its module of settings: all apply loads,
+    constant friction and springs. It reports forces and accelerations ``of_states``, or else forces
+    of steps alone; ``more`` are other fields, by default without settings in seconds."""
     return Engine(
         own.TUNED.engine,
         {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},

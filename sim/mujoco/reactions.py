@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
-from numpy.typing import NDArray
 
 from models.array import Array
 from models.mjcf.forces import SpringTendon, point_of_application
@@ -91,6 +90,10 @@ def joint_forces(model: Any, data: Any) -> JointForces:
     loops[data.efc_id[:pins:3]] = data.efc_force[:pins].reshape(-1, 3)
     rubbing = slice(data.ne, data.ne + data.nf)
     friction[data.efc_id[rubbing]] = data.efc_force[rubbing]
+    alone, turning = np.zeros(data.nefc), np.zeros(model.nv)
+    alone[gears] = data.efc_force[gears]
+    if gears.size:
+        mujoco.mj_mulJacTVec(model, data, turning, alone)
     longer = data.ten_length - model.tendon_lengthspring[:, 0]
     return JointForces(
         wrenches=data.cfrc_int[1:, 2:5].copy(),
@@ -99,17 +102,8 @@ def joint_forces(model: Any, data: Any) -> JointForces:
         friction=friction,
         controls=data.ctrl.copy(),
         pulls=model.tendon_stiffness * longer + model.tendon_damping * data.ten_velocity,
-        turning=_along_coordinates(model, data, gears),
+        turning=turning,
     )
-
-
-def _along_coordinates(model: Any, data: Any, rows: NDArray[np.intp]) -> Array:
-    """Return the forces of rows of constraints along the coordinates, (nv,)."""
-    alone, found = np.zeros(data.nefc), np.zeros(model.nv)
-    alone[rows] = data.efc_force[rows]
-    if rows.size:
-        mujoco.mj_mulJacTVec(model, data, found, alone)
-    return found
 
 
 class TreeReactions:

@@ -28,7 +28,7 @@ def add_contact(placed: SpaceBodies, pair: CamPair, number: int) -> None:
         facet = pymunk.Segment(cam, here, there, shape.skin_m)
         facet.set_neighbors(ring[k], ring[k + 3])
         shapes.append(facet)
-    if shape.is_flat:
+    if pair.profile.follower.is_flat:
         face = [placed.from_centre(pair.follower, corner) for corner in _face(shape)]
         shapes.append(pymunk.Poly(follower, face))
     else:
@@ -38,14 +38,6 @@ def add_contact(placed: SpaceBodies, pair: CamPair, number: int) -> None:
         each.filter = pymunk.ShapeFilter(categories=1 << number, mask=1 << number)
         each.friction = each.elasticity = 0.0
         placed.space.add(each)
-
-
-def correct(space: pymunk.Space, error_bias: float) -> None:
-    """Let contacts be corrected as joints are: Chipmunk's own bias of both is one number. Where all
-    of an error is, none remains as slop, by default 0.1 m."""
-    space.collision_bias = error_bias
-    if error_bias == 0.0:
-        space.collision_slop = 0.0
 
 
 def _face(shape: FollowerShape) -> list[Point]:

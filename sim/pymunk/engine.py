@@ -19,7 +19,6 @@ from sim.pymunk import settings as own
 from sim.pymunk.acting import SpaceActing
 from sim.pymunk.arcs import Arcs
 from sim.pymunk.bodies import FIELDS, WIDTH, chain_springs, rows_of
-from sim.pymunk.cam_contacts import correct
 from sim.pymunk.convergence import iterations
 from sim.pymunk.driven_joint import driven_joint
 from sim.pymunk.native import moves_freely
@@ -55,11 +54,13 @@ class PymunkSession:
         self._iterations = iterations(settings, self._model)
         self._space.iterations = self._iterations
         self._space.damping = float(settings["damping"])
+        bias = float(settings["error_bias"])
         for constraint in self._space.constraints:
-            constraint.error_bias = float(settings["error_bias"])
-        self._touches = bool(self._space.shapes)
-        if self._touches:
-            correct(self._space, float(settings["error_bias"]))
+            constraint.error_bias = bias
+        if self._space.shapes:  # Chipmunk's own bias of joints and of contacts is one number
+            self._space.collision_bias = bias
+            if bias == 0.0:  # all of an error is corrected, but for the slop, by default 0.1 m
+                self._space.collision_slop = 0.0
         law = scene.driver.law
         inner = scene.driver.is_inner and drive == "prescribed"
         self._coasts = drive == "free" or (isinstance(law, laws.ConstantSpeed) and not inner)
@@ -94,7 +95,7 @@ class PymunkSession:
                 **as_held("iterations", asked, self._iterations, int(space.iterations), cause),
                 "damping": float(space.damping),
                 **({"error_bias": biases.pop()} if len(biases) == 1 else {}),
-                **({"collision_slop_of_cams": space.collision_slop} if self._touches else {}),
+                **({"collision_slop_of_cams": space.collision_slop} if space.shapes else {}),
             },
             velocity_shift=VELOCITY_SHIFT,
             acceleration_shift=0.0,

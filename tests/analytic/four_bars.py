@@ -1,5 +1,6 @@
 """The four-bar A B C D of any lengths, and random ones."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -25,6 +26,18 @@ def fourbar(
     driver: str = 'link = "crank"', start_deg: float = 0.0, speed: float = 1.0,
 ) -> Scene:  # fmt: skip
     return parse_scene(TEXT.format(**locals()), "test")
+
+
+def rocker_limits_rad(a: float, b: float, c: float, d: float) -> tuple[float, float]:
+    """The rocker's angles against DA with crank and coupler in line, by the law of cosines."""
+    near, far = (math.acos((c**2 + d**2 - x**2) / (2.0 * c * d)) for x in (b - a, b + a))
+    return near, far
+
+
+def time_ratio(a: float, b: float, c: float, d: float) -> float:
+    """Slower over quicker stroke of a crank-rocker, by the crank's angles at these limits."""
+    over, along = (math.acos((d**2 + x**2 - c**2) / (2.0 * d * x)) for x in (b - a, b + a))
+    return (math.pi + abs(over - along)) / (math.pi - abs(over - along))
 
 
 def random_bars(seed: int, count: int, margin_m: float) -> Iterator[FourBar]:

@@ -103,7 +103,7 @@ def lift_off_rad_s(scene: Scene) -> float:
     pair, spring = scene.cams["disc"], scene.springs["close"]
     preload = spring.rate * (pair.lowest(scene.points_of, scene.sliders) - spring.free)
     load = FollowerLoad(scene.links["lifter"].mass_kg, spring.rate, preload)
-    return lift_off(pair.profile, load).omega_rad_s
+    return lift_off(pair.profile, load)[0]
 
 
 def opening(scene: Scene, engine: str, facets: int, steps: int) -> float:

@@ -14,13 +14,13 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
-from matplotlib.ticker import MultipleLocator
 
 from analytic.cams.cam_design import ExaminedCam
-from analytic.cams.profile import CamContact, Plane, largest, touch, turn_of
+from analytic.cams.profile import CamContact, Plane, largest, touch
 from models.array import Array
 from models.scene.cams import Cam, OscillatingFollower
-from reports.figures.sheet import SIDES, Panels, sheet
+from reports.figures.layout import LAYOUT
+from reports.figures.sheet import SIDES, Panels, sheet, spaced
 from reports.figures.style import COLUMN_IN, INK, QUIET, TINY, Look, saved, shorten, styled
 from reports.lectures.cams.profile_files import unit_of
 from reports.lectures.drawing.sheets.paper import (
@@ -51,7 +51,7 @@ WORDS_MM, LINE_MM, BAR_MM = 62.0, 5.2, 14.0
 def drawings(
     name: str, source: str, found: ExaminedCam, numbers: Mapping[str, str], paper: str
 ) -> Mapping[str, bytes]:
-    """Return all drawings as SVG and PDF by the names of their files; the numbers, by name, stand
+    """Return all drawings by the names of their files; the numbers, by name, stand
     beside the cam."""
     size, note = Paper.of(paper), f"crankcheck {crankcheck_version()}, closed form; {source}"
     files: dict[str, bytes] = {}
@@ -61,7 +61,7 @@ def drawings(
             "checks": draw_checks(name, note, found),
         }
         drawn = draw_cam(name, note, found, numbers, size)
-    for kind in ("svg", "pdf"):
+    for kind in LAYOUT.get().formats:
         files |= {
             f"{key}.{kind}": saved(one, kind, f"{name}: {key}") for key, one in figures.items()
         }
@@ -71,7 +71,7 @@ def drawings(
 
 def samples(found: ExaminedCam) -> Array:
     """Return angles over a turn, dense between knots, with limits from both sides of them (T,)."""
-    knots = turn_of(found.cam)
+    knots = found.cam.law.knots_rad
     spans = [np.linspace(a, np.nextafter(b, 0.0), STEPS) for a, b in pairwise(knots)]
     return np.concatenate(spans)
 
@@ -107,7 +107,7 @@ def _over_the_turn(
         one.plot(degrees, series, **CURVE)
         one.set_ylabel(label)
         one.set_xlim(0.0, 360.0)
-        one.xaxis.set_major_locator(MultipleLocator(60.0))
+        spaced(one, 60.0)
         one.axhline(0.0, color=QUIET, linewidth=0.5)
         for border in _borders(found)[1:-1]:
             one.axvline(border, color=QUIET, linewidth=0.5)
@@ -165,13 +165,14 @@ def draw_cam(
     name: str, note: str, found: ExaminedCam, numbers: Mapping[str, str], paper: Paper
 ) -> Canvas:
     """Draw the cam with its follower where the pressure angle of the rise is largest, or the speed
-    of one that has no such angle; the colour of the profile is the angle of the point in contact.
-    """
+    of one that has no such angle; the colour of the profile is the contact force there, or the
+    pressure angle of a cam without a load."""
     cam, (most, phi) = found.cam, found.pressures[0]
     if not most:
-        phi = largest(turn_of(cam), lambda at: cam.law.at(at).first)[1]
+        phi = largest(cam.law.knots_rad, lambda at: cam.law.at(at).first)[1]
     contact, turned = touch(cam, np.array([phi])), np.exp(1j * cam.sense * phi)
-    round_ = touch(cam, np.linspace(0.0, math.tau, 1441))
+    angles = np.linspace(0.0, math.tau, 1441)
+    round_ = touch(cam, angles)
     profile = round_.on_cam(round_.contact) * turned
     size = 0.5 * float(np.abs(profile).max())
     lines = _follower(cam, contact, size)
@@ -185,16 +186,20 @@ def draw_cam(
     if cam.follower.roller_m and round_.pitch is not None:
         plot.curve(round_.on_cam(round_.pitch) * turned, **PITCH)
     plot.curve(profile, **CURVE)
-    if round_.pressure_rad.any():
+    if found.load is not None:
+        label = f"contact force [N] at {found.speed_rad_s:g} rad/s"
+        shades = found.forces(angles).contact_n
+    else:
+        label, shades = "pressure angle [deg]", np.abs(np.degrees(round_.pressure_rad))
+    if np.ptp(shades) > 0.0:
         points = plot.place(profile)
         drawn = LineCollection(
             list(np.stack([points[:-1], points[1:]], axis=1)), cmap=COLOURS, linewidths=3.0,
-            array=np.abs(np.degrees(round_.pressure_rad[:-1])), capstyle="round",
+            array=shades[:-1], capstyle="round",
         )  # fmt: skip
         plot.axes.add_collection(drawn)
         place = np.array([words.left, words.bottom + BAR_MM - 4.0, 0.9 * WORDS_MM, 4.0])
         bar = canvas.figure.add_axes(place / np.tile([paper.width, paper.height], 2))
-        label = "pressure angle [deg]"
         canvas.figure.colorbar(drawn, cax=bar, orientation="horizontal").set_label(label)
     plot.curve(0.06 * size * ROUND, **FOLLOWER)
     plot.write(0j, "O", 2.0, -4.0)
@@ -230,7 +235,7 @@ def _follower(cam: Cam, contact: CamContact, size: float) -> list[Plane]:
         return [*lines, np.array([pivot, foot, tip + 0.5 * size * (tip - foot) / abs(tip - foot)])]
     if follower.is_flat:
         tip = follower.offset_m + 1j * tip.imag
-        reach = max(0.6 * size, *(1.15 * abs(speed) for speed in cam.law.extremes(1)))
+        reach = max(0.6 * size, *(1.15 * abs(speed) for speed in cam.law.extremes[1]))
         lines.append(tip + np.array([-reach, reach]))
     guide = tip + np.array([1.0j, 1.3j]) * size
     return [*lines, tip + np.array([0.0, 1.4j * size]), guide - 0.07 * size, guide + 0.07 * size]

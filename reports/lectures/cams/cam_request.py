@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -18,8 +18,9 @@ from models.files.assemble import scene_text
 from models.lectures.shipped_tables import shipped_in
 from models.lectures.tasks import TASKS
 from models.lectures.tasks.cams import CamTask, load_cam_task
-from models.scene.cam_laws import KINDS, CamLaw, Peaks, peak_factors
+from models.scene.cam_laws import KINDS, CamLaw, peak_factors
 from models.scene.cams import Cam
+from reports.figures.layout import Layout, laid_out
 from reports.lectures.cams.cam_scene import cam_scene
 from reports.lectures.cams.profile_files import profile_files, unit_of
 from reports.output.console import grid, say, say_whole, show_rows
@@ -31,7 +32,7 @@ Rows = list[dict[str, object]]
 
 
 @dataclass(frozen=True)
-class CamRequest:
+class CamRequest(Layout):
     """Arguments of `cam`, as given."""
 
     task: Annotated[
@@ -44,6 +45,7 @@ class CamRequest:
     json: Annotated[bool, "As JSON, not as tables."] = False
     paper: PaperSize = "A4"
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Design, check and write a cam. Raises CrankcheckError for a faulty request."""
         if self.task is None:
@@ -144,7 +146,7 @@ def number_rows(found: ExaminedCam) -> dict[str, float | str | None]:
         rows[f"{name}_at_deg"] = math.degrees(at) if math.isfinite(size) else None
     if found.load is not None:
         rows["least_contact_force_n"], rows["largest_contact_force_n"] = found.force_range_n()
-    return rows | {f"peak_{name}": x for name, x in _peaks(found, cam.law.peaks()).items()}
+    return rows | {f"peak_{name}": x for name, x in _peaks(found, cam.law.peaks).items()}
 
 
 def number_words(found: ExaminedCam) -> dict[str, str]:
@@ -169,7 +171,7 @@ def segment_rows(found: ExaminedCam) -> Rows:
 
 
 def _peaks(
-    found: ExaminedCam, peaks: Peaks, lift: float = 1.0, span_rad: float = 1.0
+    found: ExaminedCam, peaks: Iterable[float], lift: float = 1.0, span_rad: float = 1.0
 ) -> dict[str, float | str]:
     """Return the rates by time of a motion with peaks of unit lift over unit span."""
     rows = {}

@@ -4,7 +4,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from rich.console import Console
@@ -60,18 +60,17 @@ class GearsRequest:
         if self.json:
             say_whole(console, json.dumps(document, indent=1))
             return 0
-        lost, mobility = document["efficiency"], document["mobility"]
-        share = f", efficiency {lost:.6g}" if isinstance(lost, float) else ""
+        kept, mobility = document["efficiency"], document["mobility"]
+        share = "" if kept is None else f", efficiency {kept:.6g}"
         say(console, f"{scene.name}: gear train of mobility {mobility}{share}")
         for key, columns in COLUMNS.items():
-            rows = document[key]
-            if isinstance(rows, list) and rows:
-                show_rows(console, rows, columns.split())
-        say_each(console, document["notes"] if isinstance(document["notes"], list) else ())
+            if document[key]:
+                show_rows(console, document[key], columns.split())
+        say_each(console, document["notes"])
         return 0
 
 
-def _document(scene: Scene, request: GearsRequest) -> dict[str, object]:
+def _document(scene: Scene, request: GearsRequest) -> dict[str, Any]:
     """The whole answer, as JSON has it."""
     if not scene.gears:
         raise CrankcheckError(f"{scene.name}: no gears; give the scene a [gears.NAME] table")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -21,6 +20,7 @@ from models.errors import CrankcheckError
 from models.files.assemble import scene_text
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
+from reports.figures.layout import Layout, laid_out
 from reports.lectures.machine import cycle_rows
 from reports.output.console import say_whole
 from reports.output.formats import ENDINGS, write_frame
@@ -57,13 +57,6 @@ class MachineCycle(Shown):
     def extreme_speeds_rad_s(self) -> tuple[float, float]:
         """The largest and the smallest speed."""
         return self.details.extreme_speeds_rad_s
-
-    @property
-    def extreme_angles_deg(self) -> tuple[float, float]:
-        """The driver's angles at the largest and at the smallest speed."""
-        one = self.details
-        high, low = (math.degrees(one.driver_rad(u)) for u in (one.fastest, one.slowest))
-        return high, low
 
     @property
     def surplus_j(self) -> float:
@@ -167,13 +160,14 @@ Figures = Annotated[Path | None, option("Draw the cycle, as SVG and PDF.", "DIR"
 
 
 @dataclass(frozen=True)
-class CycleRequest:
+class CycleRequest(Layout):
     """Arguments of `cycle`, as given."""
 
     scene: SceneName
     output: Output = None
     figures: Figures = None
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a steady cycle. Raises CrankcheckError for a faulty request."""
         _check_outputs(self)
@@ -226,7 +220,7 @@ def _write(
 
 
 @dataclass(frozen=True)
-class FlywheelRequest:
+class FlywheelRequest(Layout):
     """Arguments of `flywheel`, as given. ``written`` is the file of the scene, which is in free
     motion there with ``free``."""
 
@@ -241,6 +235,7 @@ class FlywheelRequest:
         False
     )
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a flywheel. Raises CrankcheckError for a faulty request."""
         _check(self)

@@ -11,13 +11,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MultipleLocator
 
 from analytic.lectures.regulation.flywheel import EnergyMass, WantedFlywheel, energy_mass
 from analytic.lectures.regulation.steady_cycle import SteadyCycle
 from models.array import Array
 from models.scene import Scene
-from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet
+from reports.figures.sheet import SIDES, LinePanel, Panels, line_figure, sheet, spaced
 from reports.figures.style import COLUMN_IN, INK, QUIET, SMALL, TINY, FigureSet, Look, shorten
 from reports.lectures.machine import cycle_rows
 from reports.lectures.machine.cycle_rows import CycleSeries, cycle_series
@@ -55,7 +54,7 @@ class Regulated:
         axes.set_xlim(*sorted(np.degrees(self.series.theta[[0, -1]])))
         shorten(axes)
         turns = round(self.cycle.machine.cycle_rad / math.tau)
-        axes.xaxis.set_major_locator(MultipleLocator(60.0 if turns == 1 else 90.0 * turns / 2.0))
+        spaced(axes, 60.0 if turns == 1 else 90.0 * turns / 2.0)
         axes.tick_params(labelbottom=labelled)
         if labelled:
             axes.set_xlabel(f"angle of {self.scene.driver.link} [deg]")
@@ -112,7 +111,7 @@ def draw_energy_mass(of: Regulated) -> Figure | None:
     axes.ticklabel_format(scilimits=(-3, 4), useMathText=False)
     for axis in (axes.xaxis, axes.yaxis):
         axis.get_offset_text().set_fontsize(SMALL)
-    axes.set_xlabel("own reduced moment of inertia [kg m²]")
+    axes.set_xlabel("own reduced inertia [kg m²]")
     axes.set_ylabel("work since the start [J]")
     return figure
 

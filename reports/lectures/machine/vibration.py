@@ -29,6 +29,7 @@ from models.array import Array
 from models.errors import CrankcheckError, shown
 from models.files.reading import find_scene, load_scene
 from models.scene import Scene
+from reports.figures.layout import Layout, laid_out
 from reports.lectures.machine import vibration_tables as files
 from reports.lectures.machine.vibration_tables import show_map, show_speeds, show_vibration
 from reports.output.console import say_whole
@@ -95,7 +96,7 @@ OVER_INERTIA = Files[InertiaMap](
 
 
 @dataclass(frozen=True)
-class VibrationRequest:
+class VibrationRequest(Layout):
     """Arguments of `vibration`, as given."""
 
     scene: SceneName
@@ -120,6 +121,7 @@ class VibrationRequest:
         None
     )
 
+    @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write a vibration. Raises CrankcheckError for a faulty request, and where there
         is no periodic motion."""

@@ -12,7 +12,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator, MultipleLocator
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from analytic.lectures.vibration.floquet import STABLE
@@ -20,7 +20,7 @@ from analytic.lectures.vibration.over_speeds import InertiaMap, OverSpeeds, spec
 from analytic.lectures.vibration.steady_vibration import SteadyVibration
 from models.array import Array
 from models.scene import Scene
-from reports.figures.sheet import SIDES, Panels, sheet
+from reports.figures.sheet import SIDES, Panels, columns_of, sheet, spaced
 from reports.figures.style import COLUMN_IN, PAGE_IN, SMALL, FigureSet, logarithmic
 from reports.lectures.machine.vibration_rows import unstable_speeds
 from reports.output.write import crankcheck_version
@@ -159,7 +159,8 @@ def draw_over_inertia(found: InertiaMap) -> Figure:
     """Draw the deflection on the left, multipliers on the right."""
     scene, driver = found.scene, found.scene.driver.link
     entries = [_entry("deviations do not grow", color="#eeeeee", marker="s", linestyle="")]
-    shape = Panels(1, 2, 2.5, 0.55, 0.62, 0.2, between=(1.15, 0.25))
+    columns = columns_of(4, 4) // 2 or 1  # each with its scale beside
+    shape = Panels(2 // columns, columns, 2.5, 0.55, 0.62, 0.2, between=(1.15, 0.5))
     title = f"Vibration over speed and inertia of {found.link}: {scene.name}"
     figure, (left, right) = sheet(PAGE_IN, shape, title, entries, notes(scene, LINEAR))
     ratios = np.array([point.ratio for point in found.over[0].points])
@@ -211,7 +212,7 @@ def draw_over_turn(vibration: SteadyVibration) -> Figure:
             panel.plot(degrees, curve, color=colours[name], linestyle=look, linewidth=1.0)
         panel.set_ylabel(f"{name} {'middle' if own.bends else 'extension'} [mm]")
         panel.set_xlim(*sorted(degrees[[0, -1]]))
-        panel.xaxis.set_major_locator(MultipleLocator(60.0))
+        spaced(panel, 60.0)
         panel.tick_params(labelbottom=panel is axes[-1])
     axes[-1].set_xlabel(f"angle of {scene.driver.link} [deg]")
     return figure

@@ -8,6 +8,7 @@ its section as its part ``section``.
 from collections.abc import Callable
 from typing import cast
 
+from reports.page.sections.cams import build as cams
 from reports.page.sections.copied import reading_forces, recommendation
 from reports.page.sections.engines import build as engines
 from reports.page.sections.errors import convergence, precision
@@ -39,6 +40,7 @@ SECTIONS: dict[str, Build] = {
     "convergence": _of_driven(convergence),
     "reading_forces": _of_driven(reading_forces),
     "motion": _of_driven(motion),
+    "cams": cams,
     "stability": stability,
     "hard": hard,
     "fairness": fairness,

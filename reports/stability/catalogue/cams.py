@@ -23,7 +23,7 @@ def _cam(ratio: float) -> Scene:
     pair, spring = scene.cams["C"], scene.springs["C"]
     preload = spring.rate * (pair.lowest(scene.points_of, scene.sliders) - spring.free)
     load = FollowerLoad(scene.links[pair.follower].mass_kg, spring.rate, preload)
-    law = ConstantSpeed(0.0, ratio * lift_off(pair.profile, load).omega_rad_s)
+    law = ConstantSpeed(0.0, ratio * lift_off(pair.profile, load)[0])
     return outlined(replace(scene, driver=replace(scene.driver, law=law)))
 
 

@@ -42,6 +42,7 @@ GROUPS = {
     "misplaced": "numbers of the log in a wrong place",
     "missing": "something missing from the log",
 }
+CONTACT = {"contact": f"another cam by contact, {FINER * STEPS} steps a turn"}
 FAULTS = FaultSet(
     (
         *requests.RUN_FAULTS,
@@ -57,12 +58,7 @@ FAULTS = FaultSet(
     ),
     {
         "motion": FaultRuns(GROUPS, turn, words, SETTINGS, unseen=UNSEEN, also=("contact",)),
-        "contact": FaultRuns(
-            {"contact": f"another cam by contact, {FINER * STEPS} steps a turn"},
-            contact,
-            words,
-            {},
-        ),
+        "contact": FaultRuns(CONTACT, contact, words, {}),
         "forces": FaultRuns(
             {"force": "a right motion with wrong forces"},
             partial(turn, forces=True),

@@ -34,5 +34,5 @@ def test_each_point_is_touched_once_in_a_turn_and_never_entered(kind: str) -> No
     for corner in scene.cams["disc"].outline:
         point = origin + complex(*corner) * np.exp(1j * cam.theta)
         off = placed(shape.place) - point
-        gap = (off * away.conj()).real if shape.is_flat else np.abs(off) - shape.roller_m
+        gap = (off * away.conj()).real if not shape.roller_m else np.abs(off) - shape.roller_m
         assert abs(gap.min()) < 2e-8

@@ -7,7 +7,7 @@ import mpmath  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 import pytest
 
-from models.scene.cam_laws import KINDS, CamLaw, CamSegment, Peaks, peak_factors
+from models.scene.cam_laws import KINDS, CamLaw, CamSegment, peak_factors
 
 SMOOTH = [kind for kind in KINDS if kind not in ("dwell", "table")]
 DEG = math.pi / 180.0
@@ -91,17 +91,17 @@ def test_peak_factors_are_those_of_the_textbooks_table() -> None:
     }
     for kind, (speed, acceleration, jerk) in printed.items():
         found = peak_factors(kind)
-        assert found.velocity == pytest.approx(speed, abs=1e-3)
-        assert found.acceleration == pytest.approx(acceleration, rel=2.1e-3)
-        assert found.jerk == pytest.approx(jerk, rel=1.5e-2)
-    assert peak_factors("uniform") == Peaks(1.0, math.inf, math.inf)
+        assert found[0] == pytest.approx(speed, abs=1e-3)
+        assert found[1] == pytest.approx(acceleration, rel=2.1e-3)
+        assert found[2] == pytest.approx(jerk, rel=1.5e-2)
+    assert peak_factors("uniform") == (1.0, math.inf, math.inf)
     # Closed forms: pi^2 / 2, 10 / sqrt(3), 4 pi^2, 84 sqrt(5) / 25, 32 pi^2 / (pi + 2).
-    assert peak_factors("harmonic").acceleration == pytest.approx(math.pi**2 / 2, rel=1e-14)
-    assert peak_factors("3-4-5").acceleration == pytest.approx(10 / math.sqrt(3), rel=1e-14)
-    assert peak_factors("cycloidal").jerk == pytest.approx(4 * math.pi**2, rel=1e-14)
+    assert peak_factors("harmonic")[1] == pytest.approx(math.pi**2 / 2, rel=1e-14)
+    assert peak_factors("3-4-5")[1] == pytest.approx(10 / math.sqrt(3), rel=1e-14)
+    assert peak_factors("cycloidal")[2] == pytest.approx(4 * math.pi**2, rel=1e-14)
     assert peak_factors("4-5-6-7")[:2] == pytest.approx((35 / 16, 84 * 5**0.5 / 25), rel=1e-14)
     top = 32 * math.pi**2 / (math.pi + 2)
-    assert peak_factors("modified-trapezoid").jerk == pytest.approx(top, rel=1e-14)
+    assert peak_factors("modified-trapezoid")[2] == pytest.approx(top, rel=1e-14)
 
 
 @pytest.mark.parametrize("kind", SMOOTH)
@@ -133,7 +133,7 @@ def test_any_turn_has_the_same_lift_and_a_law_that_begins_high_has_its_lowest_dw
     first, rest, down, last = law.segments
     other = CamLaw((down, last, first, rest))
     assert np.allclose(other.at(phi).value, law.at(phi + 160 * DEG).value, rtol=0, atol=1e-16)
-    assert other.extremes(0) == pytest.approx((0.0, 0.02), abs=1e-17)
+    assert other.extremes[0] == pytest.approx((0.0, 0.02), abs=1e-17)
     assert law.at(np.array(0.3)).value.shape == ()
     for angle in (*phi.tolist(), -0.3, 100.0, math.tau, np.nextafter(math.tau, 0.0)):
         every = [float(rate) for rate in law.at(np.array(angle))]
@@ -172,7 +172,7 @@ def test_a_table_between_dwells_comes_to_rest_at_both_ends() -> None:
     poly = CamLaw(tuple(CamSegment("3-4-5", 2.0, x.lift) if x.points else x for x in law.segments))
     phi = np.linspace(0.0, math.tau, 500)
     assert np.allclose(law.at(phi), poly.at(phi), rtol=0, atol=1e-12)
-    assert law.peaks() == pytest.approx(poly.peaks(), rel=1e-9)
+    assert law.peaks == pytest.approx(poly.peaks, rel=1e-9)
     assert law.stroke == pytest.approx(0.02, rel=1e-14)
 
 
@@ -181,7 +181,7 @@ def test_extremes_are_those_of_a_dense_search_and_never_below_it() -> None:
     for kind in SMOOTH:
         law = rise_and_return(kind)
         for order, rate in enumerate(law.at(phi)):
-            least, largest = law.extremes(order)
+            least, largest = law.extremes[order]
             scale = 1e-12 + np.abs(rate).max()
             assert -1e-12 <= (rate.min() - least) / scale < 1e-3
             assert -1e-12 <= (largest - rate.max()) / scale < 1e-3

@@ -4,12 +4,15 @@
 import re
 import shlex
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from PIL import Image
 
 from analytic.elastic.discretisation import Modes
@@ -19,11 +22,11 @@ from analytic.kinematics import solve
 from models.files.assemble import scene_text
 from models.files.reading import kinds, load_scene, shipped
 from models.motion import Motion
-from reports.drawing import gif
+from reports.figures import gif
 from reports.requests import engines
 from sim.registry import Availability
 from sim.run import run
-from tests.worlds.command_line import crank, told
+from tests.worlds.command_line import crank, refused, told
 from tests.worlds.loading import massless
 
 
@@ -116,6 +119,64 @@ def test_a_strip_of_a_swinging_driver_shows_both_its_ends(monkeypatch: pytest.Mo
     monkeypatch.setattr(Axes, "set_title", lambda _, text, **__: titles.append(text))
     gif.strip(load_scene("tangent"))
     assert {-40, 40} <= {round(float(title.split()[-2])) for title in titles}
+
+
+def test_a_run_is_drawn_beside_the_reference_with_its_error_magnified(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The dashed corner at C is where the closed form and a run of our own put it, the error times
+    the factor that the picture names: as many times as is seen, and a round number."""
+    dashed: list[np.ndarray] = []
+    labels: list[str] = []
+    legend, plot = Figure.legend, Axes.plot
+
+    def plotted(axes: Axes, *places: np.ndarray, **look: Any) -> object:
+        if look.get("linestyle") == gif.RUN["linestyle"]:
+            dashed.append(np.array(places))
+        return plot(axes, *places, **look)
+
+    def shown(figure: Figure, handles: list[Line2D], **more: Any) -> object:
+        labels.extend(str(each.get_label()) for each in handles)
+        return legend(figure, handles=handles, **more)
+
+    monkeypatch.setattr(Axes, "plot", plotted)
+    monkeypatch.setattr(Figure, "legend", shown)
+    view = "view fourbar-lecture-1 --engine pymunk -o"
+    told(view, tmp_path / "a.png")
+    words = r"pymunk [\d.]+ as-shipped, step 873 µs, error magnified (\d+) times"
+    named = re.fullmatch(words, labels[1])
+    assert named
+    factor = float(named[1])
+    assert factor in (20.0, 50.0)
+    scene = load_scene("fourbar-lecture-1")
+    period = scene.driver.law.period_s
+    start = solve(scene, np.zeros(1)).state()
+    done = run(scene, start, "pymunk", "as-shipped", dt_s=period / 720, steps=1440)
+    assert done.motion is not None
+    at = [720 + 120 * k for k in range(6)]
+    off = done.motion.points["C"].position[at]
+    exact = solve(scene, period + np.array(range(6)) * period / 6).points["C"].position
+    rockers = [line.T for line in dashed][2::3]  # crank, coupler, rocker
+    corners = np.array([line[0] if abs(line[0, 1]) > 1e-6 else line[1] for line in rockers])
+    np.testing.assert_allclose(corners, exact + factor * (off - exact), atol=1e-7)
+    size = np.ptp(np.vstack([exact, [[-0.1, -0.1], [0.3, 0.2]]]), axis=0).max()
+    assert 0.02 < factor * np.linalg.norm(off - exact, axis=1).max() / size < 0.07
+    told(view, tmp_path / "b.png", "--magnify", "7")
+    assert labels[-1].endswith("error magnified 7 times")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("--engine pymunk --magnify often", "--magnify: found 'often'; give a number above 0"),
+        ("--engine pymunk --magnify nan", "--magnify: found 'nan'"),
+        ("--engine pymonk", "did you mean pymunk"),
+        ("--engine pymunk --forces", "--forces with --engine"),
+    ],
+)
+def test_a_run_that_can_not_be_drawn_is_refused(options: str, words: str, tmp_path: Path) -> None:
+    refused(crank(*f"view fourbar-lecture-1 -o {tmp_path / 'a.png'} {options}".split()), words)
+    assert not (tmp_path / "a.png").exists()
 
 
 COARSE = "--steps-per-turn 90 --turns 1"

@@ -13,20 +13,27 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import get_font_names
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
+from PIL import Image
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from models.files.reading import load_scene
 from reports.figures.drawing import marks
+from reports.figures.force_figures import FORCE_FIGURES, force_turn
 from reports.figures.free_figures import _over_one_turn
 from reports.figures.free_runs import free_runs
-from reports.figures.style import FORMATS, cut, styled, width_in
+from reports.figures.layout import DEFAULT, LEAST_MM
+from reports.figures.style import cut, styled, width_in
 from reports.requests.figures import FIGURES, FiguresRequest
+from reports.requests.solve import SolveRequest
 from reports.results.lines import lines
 from reports.results.overview import Report
 from reports.store.reader import read_store
+from sim.registry import ENGINES
 from tests.reports.results.made import cell, stored
 from tests.worlds.free_store import LASTS_S
 from tests.worlds.free_store import SCENE as LET_GO
@@ -61,9 +68,7 @@ FAULTS = {
 
 def as_svg(store: Path, folder: Path) -> Path:
     """All of a store, as SVG alone: fonts of a PDF take twice the time of all else."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.requests.figures.FORMATS", ("svg",))
-        figures(store, folder)
+    figures(store, folder, format="svg")
     return folder
 
 
@@ -77,9 +82,9 @@ def drawn_free(free_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
     return as_svg(free_store, tmp_path_factory.mktemp("drawn") / "figs")
 
 
-def figures(*asked: object) -> str:
+def figures(*asked: object, **layout: object) -> str:
     said = io.StringIO()
-    assert FiguresRequest(*asked).run(Console(file=said), Console()) == 0  # type: ignore[arg-type]
+    assert FiguresRequest(*asked, **layout).run(Console(file=said), Console()) == 0  # type: ignore[arg-type]
     return said.getvalue()
 
 
@@ -132,7 +137,9 @@ def test_what_was_run_and_what_failed_stand_under_a_result(drawn: Path) -> None:
 
 def test_scene_and_only_choose_and_a_pdf_brings_its_fonts(chosen: tuple[Path, str]) -> None:
     folder, said = chosen
-    assert {p.name for p in folder.iterdir()} == {f"mechanism-slotted-lever.{k}" for k in FORMATS}
+    assert {p.name for p in folder.iterdir()} == {
+        f"mechanism-slotted-lever.{k}" for k in DEFAULT.formats
+    }
     assert "1 figure, each as .svg and .pdf" in said
     raw = (folder / "mechanism-slotted-lever.pdf").read_bytes()
     assert raw.startswith(b"%PDF-1.")
@@ -232,6 +239,7 @@ def figure_of(report: Report, name: str, scene: str | None) -> Figure | None:
     return drawing.of(report, scene) if drawing.of else None
 
 
+@pytest.mark.usefixtures("any_width")
 @pytest.mark.parametrize("shown", few(SHOWN, QUICK, OTHER), ids=str)
 def test_words_keep_off_others_and_the_edge(report: Report, shown: tuple[str, str | None]) -> None:
     if shown in EMPTY:
@@ -240,6 +248,7 @@ def test_words_keep_off_others_and_the_edge(report: Report, shown: tuple[str, st
         has_room(figure_of, report, *shown)
 
 
+@pytest.mark.usefixtures("any_width")
 @pytest.mark.parametrize("name", few(OF_FREE, {"let-go", "energy"}, OTHER))
 def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: str) -> None:
     free = Report(read_store(free_store))
@@ -247,6 +256,58 @@ def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: st
     if name == "energy":
         ends = [axes.get_xlim() for axes in figure_of(free, name, LET_GO).axes]
         assert ends == [(0.0, pytest.approx(LASTS_S))] * len(ends)
+
+
+def test_a_layout_is_kept_and_a_faulty_one_refused_in_a_line(store: Path, tmp_path: Path) -> None:
+    """The width by the SVG's own attribute, the font by that of a PDF, the size of a picture by its
+    pixels; words that are left out are those of the others."""
+    layout = {"width_mm": 85.0, "font": "Liberation Serif", "format": "svg, PDF,png,svg"}
+    if "Liberation Serif" not in get_font_names():
+        layout["font"] = "STIXGeneral"  # matplotlib's own
+    plain = figures(store, tmp_path / "a", [SCENES[0]], ["convergence"], **layout)
+    bare = {"no_title": True, "no_notes": True}
+    figures(store, tmp_path / "b", [SCENES[0]], ["convergence"], **layout, **bare)
+    assert "each as .svg and .pdf and .png" in plain
+    name = f"convergence-{SCENES[0]}"
+    svg, own = ((tmp_path / n / f"{name}.svg").read_bytes() for n in "ab")
+    assert f'width="{85.0 / 25.4 * 72:.5g}'.encode() in svg
+    assert f"font-family:'{layout['font']}'".encode() in svg
+    assert layout["font"].replace(" ", "").encode() in (tmp_path / f"a/{name}.pdf").read_bytes()
+    with Image.open(tmp_path / f"a/{name}.png") as picture:
+        assert picture.width == pytest.approx(85.0 / 25.4 * 600, abs=1)
+    lost = set(texts(svg).splitlines()) - set(texts(own).splitlines())
+    assert any(words.startswith("Convergence") for words in lost)
+    assert any(words.startswith("crankcheck 0.0.0") for words in lost)
+    assert "time step [s]" in texts(own)
+    faults: tuple[tuple[str, dict[str, object]], ...] = (
+        ("--font: 'Helvetika' is not installed here", {"font": "Helvetika"}),
+        ("--format: 'eps' is unknown; give svg, pdf or png", {"format": "svg,eps"}),
+        ("--format: '' is unknown", {"format": ""}),
+        (f"--width-mm: found 20; give {LEAST_MM:g} to 500", {"width_mm": 20.0}),
+        ("--width-mm: found nan", {"width_mm": float("nan")}),
+    )
+    for words, fault in faults:
+        with pytest.raises(CrankcheckError, match=words):
+            figures(store, tmp_path / "c", **fault)
+    assert not (tmp_path / "c").exists()
+    with pytest.raises(CrankcheckError, match="--no-notes: no figure is drawn; give --figures DIR"):
+        SolveRequest(SCENES[0], no_notes=True).run(Console(), Console())
+
+
+def test_the_picture_of_the_readme_has_all_engines_and_is_small() -> None:
+    """`make picture` draws it anew; its times are those of a run."""
+    path = Path(__file__).parents[3] / "docs" / "images" / "work-precision-fourbar-lecture-1.svg"
+    svg = path.read_bytes()
+    assert len(svg) <= 60_000
+    variants = {f"{name} {profile}" for name in ENGINES for profile in ("as-shipped", "tuned")}
+    assert variants <= set(texts(svg).splitlines())
+
+
+def test_panels_of_a_figure_have_one_scale(report: Report) -> None:
+    limits = {axes.get_ylim() for axes in figure_of(report, "split", SCENES[0]).axes}
+    assert len(limits) == 1
+    reactions = FORCE_FIGURES.draws["reactions-polar"](force_turn(load_scene("shaper"))).axes
+    assert len({round(np.ptp(axes.get_xlim()), 6) for axes in reactions}) == 1
 
 
 def test_a_name_that_is_too_long_loses_its_middle() -> None:

@@ -51,6 +51,7 @@ UNTIL_S = 0.4
 SLIDER_CRANK, RODS = "slider-crank-excel-350", [3.5, 2.5, 2.2, 2.1]
 
 
+@pytest.mark.usefixtures("any_width")
 @pytest.mark.parametrize("drawn", few(DRAWN, QUICK, "the same figures, other curves"), ids=str)
 def test_words_of_forces_have_room(drawn: tuple[str, str]) -> None:
     name, figure = drawn
@@ -124,6 +125,7 @@ def wanted() -> WantedFlywheel:
     return wanted_flywheel(TurningMachine.of(load_scene("engine-four-stroke")), 0.02)
 
 
+@pytest.mark.usefixtures("any_width")
 @pytest.mark.parametrize("name", REGULATION_FIGURES.draws)
 def test_words_of_regulation_have_room(wanted: WantedFlywheel, name: str) -> None:
     has_room(REGULATION_FIGURES.draws[name], Regulated(wanted.cycle, wanted))
@@ -147,6 +149,7 @@ def vibration() -> SteadyVibration:
     return steady_vibration(load_scene("fourbar-elastic"), ONE)
 
 
+@pytest.mark.usefixtures("any_width")
 @slow("drawn whole: 2 s; words of other figures remain")
 def test_words_of_vibration_have_room(vibration: SteadyVibration) -> None:
     factors, few_rad_s = np.array([1.0, 30.0]), np.linspace(17.0, 19.0, 3)

@@ -4,16 +4,21 @@ import itertools
 import math
 import re
 from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any, cast
 
+import numpy as np
 import pandas as pd
 import pytest
 
+from models.files.reading import load_scene
 from reports.output.numbers import duration
 from reports.page.build import render
+from reports.page.sections import SECTIONS
 from reports.page.sections.copied import reading_forces as build_forces
 from reports.page.sections.copied import recommendation as build_recommendation
 from reports.page.sections.errors import precision as build_precision
-from reports.page.sections.section import chosen, steps_held
+from reports.page.sections.section import PageReport, Section, chosen, steps_held
 from reports.page.sections.stability import holds
 from reports.page.sections.verdict import build as build_verdict
 from reports.results.overview import Report
@@ -186,3 +191,22 @@ def test_forces_are_told_at_the_finest_step_with_a_program_where_they_were_asked
     assert "4.0e-2" in render(report, [section])
     asked[-1] = asked[-1] | {"status": "diverged", "reaction_pure": math.nan}
     assert build_forces(report_of(asked)).words["rows"][0]["reaction"] == math.inf
+
+
+def test_cams_have_their_laws_and_the_pressure_angle_round_their_profiles() -> None:
+    def of(name: str) -> Section | None:
+        return SECTIONS["cams"](cast(PageReport, SimpleNamespace(scenes={name: load_scene(name)})))
+
+    assert of("fourbar-lecture-1") is None
+    section = of("cam-flat")  # a circle of 50 mm, 10 mm off its shaft, under a flat face
+    assert section is not None
+    assert section.embedded is not None
+    (cam,) = cast(Sequence[Any], section.embedded["cams"])
+    phi = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
+    course = [1.0 - np.cos(phi), np.sin(phi), np.cos(phi), -np.sin(phi), np.zeros(360)]
+    for found, true in zip(cam["curves"], course, strict=True):
+        assert np.allclose(found, 0.01 * true, atol=1e-12)
+    middle = np.mean(cam["x"]), np.mean(cam["y"])
+    assert np.hypot(*middle) == pytest.approx(0.01, abs=1e-9)
+    assert np.allclose(np.hypot(cam["x"] - middle[0], cam["y"] - middle[1]), 0.05, atol=1e-9)
+    assert (cam["name"], cam["unit"]) == ("cam-flat, disc", "m")

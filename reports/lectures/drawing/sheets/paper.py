@@ -243,7 +243,7 @@ class Canvas:
         return next(axes for axes in self.layers if axes.get_gid() == f"layer-{name}")
 
     def saved(self, kind: str, title: str) -> bytes:
-        """The file of the sheet, of a kind in `reports.figures.style.FORMATS`."""
+        """The file of the sheet, of a kind in `reports.figures.layout.DOTS_PER_IN`."""
         raw = saved(self.figure, kind, title)
         return _layered(raw.decode()).encode() if kind == "svg" else raw
 

@@ -22,7 +22,7 @@ from models.errors import CrankcheckError, ReachError
 from models.files.reading import load_scene
 from models.scene import Driver, Scene
 from models.scene.driver import Released
-from tests.analytic.four_bars import fourbar, random_bars
+from tests.analytic.four_bars import fourbar, random_bars, rocker_limits_rad
 from tests.worlds.tiers import slowly
 
 WHOLE = [(-math.pi, math.pi)]
@@ -219,7 +219,7 @@ def test_a_crank_rocker_swings_and_transmits_as_its_closed_form_says() -> None:
     told = turning(scene.name)
     assert told["crank", "ground"].turns == 1
     assert told["coupler", "crank"].turns == -1
-    swing = np.ptp(bar.rocker_limits_rad)
+    swing = np.ptp(rocker_limits_rad(0.1, 0.25, 0.2, 0.3))
     assert told["rocker", "ground"].swing_rad == pytest.approx(swing, rel=1e-12)
     (dyad,), merit = transmissions(circuits)
     assert (dyad.smallest_rad.value, dyad.largest_rad.value) == pytest.approx(bar.transmission_rad)

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
@@ -12,6 +13,9 @@ import pytest
 from models.lectures.shipped_tables import shipped_in
 from models.lectures.tasks import TASKS
 from models.lectures.tasks.cams import load_cam_task
+from reports.lectures.cams.cam_drawings import draw_cam
+from reports.lectures.cams.cam_request import designed
+from reports.lectures.drawing.sheets.paper import Paper
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.tiers import few
 
@@ -79,11 +83,31 @@ def test_files_hold_the_profile_and_sheets_are_drawn(name: str, tmp_path: Path) 
     places = np.array([p.split(",") for p in drawn.attrib["points"].split()], dtype=float)
     assert np.allclose(places * (1.0, -1.0), 1e3 * points, rtol=0, atol=1e-5)
     assert svg.attrib["width"] == f"{svg.attrib['viewBox'].split()[2]}mm"
-    coloured = "pressure angle [deg]" in (tmp_path / "cam.svg").read_text(encoding="utf-8")
-    assert coloured != (name == "flat-tappet")  # without a pressure angle
     for sheet in SHEETS:
         Xml.fromstring((tmp_path / f"{sheet}.svg").read_text(encoding="utf-8"))
         assert (tmp_path / f"{sheet}.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_the_profile_has_the_contact_force_as_its_colour() -> None:
+    task, _ = load_cam_task("valve-roller")
+    found = designed(task)
+    cam, load = found.cam, found.load
+    assert load is not None
+    sheet = draw_cam("valve-roller", "", found, {}, Paper.of("A4"))
+    (curve,) = (each for axes in sheet.layers for each in axes.collections)
+    forces = curve.get_array()
+    assert forces is not None
+    phi, step = math.radians(20.0), 1e-4  # in the rise; 1441 places of a turn, a quarter degree
+    before, lift, after = (cam.law.at_one(phi + by)[0] for by in (-step, 0.0, step))
+    rate, bend = (after - before) / (2 * step), (after - 2 * lift + before) / step**2
+    high = cam.base_m + cam.follower.roller_m + lift
+    along = load.inertia * bend * task.speed_rad_s**2 + load.stiffness * lift
+    along += load.preload + load.weight  # which presses on the cam
+    assert forces[80] == pytest.approx(along * math.hypot(1.0, rate / high), rel=1e-6)
+    free = draw_cam("valve-roller", "", replace(found, load=None), {}, Paper.of("A4"))
+    (curve,) = (each for axes in free.layers for each in axes.collections)
+    alpha = math.degrees(math.atan2(rate, high))
+    assert curve.get_array()[80] == pytest.approx(alpha, rel=1e-6)
 
 
 def test_faulty_tasks_are_refused_in_one_message(tmp_path: Path) -> None:

@@ -167,7 +167,7 @@ def test_in_python_results_are_small_values_that_print_as_the_commands() -> None
     wheel = crankcheck.flywheel("shaft.toml", 0.01)
     again = crankcheck.cycle(wheel.scene)
     assert again.delta == pytest.approx(0.01, rel=1e-10)
-    assert again.extreme_angles_deg == pytest.approx(wheel.cycle.extreme_angles_deg)
+    assert again.details.fastest == pytest.approx(wheel.cycle.details.fastest)
     assert "<table" in wheel._repr_html_()
     free = wheel.cycle.scene_let_go(2.0)
     assert free.driver.law.period_s == pytest.approx(2.0 * wheel.cycle.details.period_s)

@@ -1,4 +1,5 @@
-"""Draw a mechanism in motion: an animated GIF over one turn, or a strip of positions as PNG."""
+"""Draw a mechanism in motion, a run over it if there is one: an animated GIF over one turn, or a
+strip of positions as PNG."""
 
 from __future__ import annotations
 
@@ -6,6 +7,7 @@ import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,7 +15,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patheffects import withStroke
 from PIL import Image
 
 from models.array import Array
@@ -22,7 +23,9 @@ from models.scene import GROUND, Scene, Slider
 from models.scene.driver import driver_stands
 from reports.drawing import shape
 from reports.drawing.force_arrows import ForceArrows, force_arrows
+from reports.drawing.moving import Magnified, magnification
 from reports.drawing.pair_curves import blocks_of, pair_curves
+from reports.figures.style import POINTS, SIZE, SMALL, width_in
 from reports.output.numbers import readable
 from reports.protocol.way import way_of
 
@@ -65,15 +68,63 @@ def scale_bar(axes: Axes, arrows: ForceArrows, box: tuple[Array, Array], fontsiz
     )
 
 
-FRAMES, FRAME_S = 60, 0.06
+def write_names(
+    axes: Axes,
+    scene: Scene,
+    motion: Motion,
+    at: int,
+    box: tuple[Array, Array],
+    per_m: float,
+    taken: Sequence[Array] = (),
+    larger: float = 1.0,
+) -> None:
+    """Write the letters of points and the names of links at a sample, clear of what is drawn and
+    of places ``taken`` [m]; a metre is ``per_m`` inches, and type ``larger`` than in figures."""
+    sizes = {True: larger * SIZE, False: larger * SMALL}
+
+    def room(text: str, is_point: bool) -> tuple[float, float]:
+        return width_in(text, sizes[is_point]), 0.75 * sizes[is_point] / POINTS
+
+    low, high = box
+    paper = shape.Sheet(low, tuple((high - low) * per_m), per_m, 0.1 * scene.longest_m)
+    for each in shape.names(scene, motion, at, paper, room, taken):
+        slope = "normal" if each.is_point else "italic"
+        look: dict[str, Any] = {"size": sizes[each.is_point], "style": slope, "zorder": 8}
+        axes.text(each.x, each.y, each.text, ha="center", va="center", **look)
+
+
+FRAMES, FRAME_S, LARGER = 60, 0.06, 8.0 / 7.0
 STRIP = 6
 GUIDE = "#9aa5b1"
+RUN: dict[str, Any] = {"color": INK, "linewidth": 1.4, "linestyle": (0, (3.0, 1.5))}
 
 
-def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
+@dataclass(frozen=True)
+class DrawnRun:
+    """A run in an engine, its name, and the factor of its errors; None for one that shows them."""
+
+    motion: Motion
+    name: str
+    factor: float | None = None
+
+    def beside(self, scene: Scene, positions: int, most_s: float) -> Magnified:
+        """Return the run and the reference at some of its samples: those of its second turn, where
+        it has two, and of free motion from its start on."""
+        time_s, lasts = self.motion.time_s, min(scene.driver.law.period_s, most_s)
+        start = 0.0 if scene.is_free or time_s[-1] < 1.99 * lasts else scene.driver.law.period_s
+        ends = np.searchsorted(time_s, [start - 1e-9 * lasts, start + (1.0 + 1e-9) * lasts])
+        samples = np.linspace(ends[0], ends[1] - 1, positions).round().astype(int)
+        exact = way_of(scene).motion(scene, time_s[samples])
+        run = self.motion.each_series(lambda series: series[samples])
+        size = shape.size_of_motion(scene, exact)
+        factor = magnification(run, exact, {}, size) if self.factor is None else self.factor
+        return Magnified(scene, run, exact, {}, factor)
+
+
+def animation(scene: Scene, run: DrawnRun | None = None, *, with_forces: bool = False) -> bytes:
     """Return one turn of the scene, or its free motion as far as it goes in that time, as a GIF
     that repeats, its forces as arrows if requested."""
-    turn = _Turn.of(scene, FRAMES, with_forces=with_forces)
+    turn = _Turn.of(scene, FRAMES, run, with_forces=with_forces)
     figure = _figure(turn.box, columns=1, rows=1, width=6.4)
     canvas = FigureCanvasAgg(figure)
     axes = figure.add_subplot()
@@ -99,9 +150,9 @@ def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
     return buffer.getvalue()
 
 
-def strip(scene: Scene, *, with_forces: bool = False) -> bytes:
+def strip(scene: Scene, run: DrawnRun | None = None, *, with_forces: bool = False) -> bytes:
     """Return six positions over one turn, side by side, as a PNG; forces as in `animation`."""
-    turn = _Turn.of(scene, STRIP, with_forces=with_forces)
+    turn = _Turn.of(scene, STRIP, run, with_forces=with_forces)
     columns, rows = STRIP // 2, 2
     figure = _figure(turn.box, columns, rows, width=4.0)
     for index in range(STRIP):
@@ -122,15 +173,20 @@ class _Turn:
     path: Motion
     box: tuple[Array, Array]
     arrows: ForceArrows | None = None
+    run: DrawnRun | None = None
+    beside: Magnified | None = None
 
     @staticmethod
-    def of(scene: Scene, positions: int, *, with_forces: bool) -> _Turn:
+    def of(scene: Scene, positions: int, run: DrawnRun | None, *, with_forces: bool) -> _Turn:
         most_s = way_of(scene).drawn_s(FRAMES * FRAME_S)
         path = shape.turn_of(scene, shape.PATH_SAMPLES, most_s, with_forces=with_forces)
         motion = shape.turn_of(scene, positions + 1, most_s, with_forces=with_forces)
         arrows = None if path.forces is None else force_arrows(scene, path)
         box = shape.box_of(scene, path) if arrows is None else arrows.box(path)
-        return _Turn(scene, motion, path, box, arrows)
+        if run is None:
+            return _Turn(scene, motion, path, box, arrows)
+        beside = run.beside(scene, positions + 1, most_s)
+        return _Turn(scene, beside.rigid, path, box, None, run, beside)
 
 
 def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> Figure:
@@ -153,8 +209,11 @@ def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> 
 
 
 def _legend(figure: Figure, turn: _Turn) -> None:
-    colours = shape.colours_of(turn.scene)
-    handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
+    handles = []
+    if turn.run is not None and turn.beside is not None:
+        words = f"{turn.run.name}, error magnified {turn.beside.factor:g} times"
+        handles.append(Line2D([], [], label="reference", color=GUIDE, linewidth=4))
+        handles.append(Line2D([], [], label=words, **RUN))
     if turn.arrows is not None:
         words = "force on the body of that colour, black: on a block"
         look: dict[str, Any] = {"color": INK, "linewidth": 1.6, "marker": ">", "markersize": 5}
@@ -170,13 +229,16 @@ def _draw(axes: Axes, turn: _Turn, index: int) -> None:
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal", adjustable="box")
-    size = draw_bodies(axes, scene, motion, turn.path, index, 0.8)
-    blocks = {slider.point for slider in scene.sliders.values()}
-    for name, point in motion.points.items():
-        aside = (0.055 if name in blocks else 0.025) * size  # clear of the block
-        x, y = (float(each) + aside for each in point.position[index])
-        halo = [withStroke(linewidth=2.5, foreground="white")] if turn.arrows else []
-        axes.annotate(name, (x, y), fontsize=8, color=INK, zorder=9, path_effects=halo)
+    draw_bodies(axes, scene, motion, turn.path, index, 0.8)
+    taken = [] if turn.arrows is None else [each.shaft for each in turn.arrows.at(motion, index)]
+    if turn.beside is not None:
+        outlines = [turn.beside.outline(name, index) for name in scene.links]
+        for line in outlines:
+            axes.plot(*np.vstack([line, line[: len(line) > 2]]).T, **RUN, zorder=6)
+            taken += [np.linspace(a, b, 24) for a, b in pairwise(line)]
+    room = np.array(axes.get_window_extent().size) / axes.figure.dpi
+    per_m = float(np.min(room / (high - low)))
+    write_names(axes, scene, motion, index, turn.box, per_m, taken, LARGER)
     title = f"{scene.name}   {driver_stands(scene, motion, index)}"
     if turn.arrows is not None and motion.forces is not None:
         draw_arrows(axes, turn.arrows, motion, index)
