@@ -205,9 +205,9 @@ def _quantity(column: str) -> tuple[str, str]:
     """Return name and unit of a column of pure errors."""
     if column in DIAGRAMS:
         return DIAGRAMS[column]
-    words = column.removesuffix("_pure").replace("_", " ")
-    share = QUANTITIES[words.split()[0]].share if words.split()[0] in QUANTITIES else ""
-    return words, SHARES.get(share, share)
+    words = column.removesuffix("_pure").replace("_differenced", ", from logged places")
+    entry = QUANTITIES.get(words.partition(",")[0])
+    return words, SHARES.get(entry.share, entry.share) if entry else ""
 
 
 def _finite(limit: float) -> float | None:

@@ -95,6 +95,7 @@ def serious(tab: Tab, path: Path) -> list[str]:
         shown = tab.on(screen).open(path, color_scheme=scheme).page
         shown.evaluate(OPENED)
         shown.wait_for_function(DRAWN)
+        tab.needs_no_scrolling_aside()
         found += [
             f"{scheme}: {each['id']}: {node['html'][:120]}"
             for each in Axe().run(shown).response["violations"]
