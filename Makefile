@@ -10,6 +10,8 @@
 #   make slow         the long checks that `make test` leaves out
 #   make docs         build the documentation into out/docs: every example run, every link checked
 #   make benchmarks   speed of the reference, of logging and of free motion, as ratios
+#   make oldest       compare and test with the oldest packages that pyproject.toml admits
+#   make release      build wheel and source archive into out/dist, check and install them
 #   make models       write the MJCF files in models/canonical/ anew
 #   make format       format the code
 
@@ -18,7 +20,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test lint pytest quick record browser report picture hard engines slow docs benchmarks models format clean
+.PHONY: verify test lint pytest quick record browser report picture hard engines slow docs benchmarks \
+	oldest release models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
@@ -63,10 +66,10 @@ report: $(VENV)/crankcheck
 	$(BIN)/crankcheck figures out/study -o out/figures
 
 picture: $(VENV)/crankcheck
-	$(BIN)/crankcheck sweep fourbar-lecture-1 --engine all --profile as-shipped --profile tuned \
+	$(BIN)/crankcheck sweep fourbar-lecture-1 --engine all --profile as-shipped --profile tuned --turns 2 \
 		--steps-per-turn 90,180,360,720,1440 --jobs 1 -o out/picture
 	$(BIN)/crankcheck figures out/picture --only work-precision --scene fourbar-lecture-1 \
-		--width-mm 140 --no-notes --format svg -o docs/images
+		--width-mm 140 --no-title --no-notes --format svg -o docs/images
 
 hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard
@@ -95,6 +98,34 @@ benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/window_chain.py
 	$(BIN)/python benchmarks/free.py
 	$(BIN)/python benchmarks/elastic_engines.py --few
+
+# Each lower bound of a dependency as a pin; what the tests need beside that is as always.
+OLDEST := out/oldest/bin
+oldest: $(VENV)/crankcheck
+	rm -rf out/oldest && $(BIN)/python -m venv out/oldest
+	$(BIN)/python -c 'import tomllib; \
+		own = tomllib.load(open("pyproject.toml", "rb"))["project"]["dependencies"]; \
+		print(*own, sep="\n")' | sed 's/>=/==/' > out/oldest/bounds.txt
+	$(OLDEST)/python -m pip install --quiet --disable-pip-version-check --requirement out/oldest/bounds.txt \
+		--editable . hypothesis pytest
+	$(OLDEST)/crankcheck verify
+	for engine in mujoco pymunk; do $(OLDEST)/crankcheck engines check $$engine || exit; done
+	$(OLDEST)/python -m pytest -q tests/reports/cli/test_each_command.py -W ignore::DeprecationWarning
+
+# Each Python of 3.11 or later that is to be had installs the wheel, also those of pyenv.
+PYTHONS ?= python3.11 python3.12 python3.13 python3.14
+release: export PIP_CONSTRAINT := constraints.txt
+release: $(VENV)/release
+	rm -rf out/dist out/wheel
+	$(BIN)/python -m build --outdir out/dist .
+	$(BIN)/twine check --strict out/dist/*
+	export PYENV_VERSION="$$(pyenv versions --bare 2>/dev/null | paste -sd:)"; \
+	for python in $(PYTHONS); do \
+		$$python --version 2>/dev/null || { echo "$$python: not here"; continue; }; \
+		$$python -m venv out/wheel/$$python && \
+		out/wheel/$$python/bin/pip install --quiet --disable-pip-version-check out/dist/*.whl && \
+		out/wheel/$$python/bin/crankcheck verify || exit; \
+	done
 
 models: $(VENV)/crankcheck
 	for scene in fourbar-lecture-1 slider-crank-central; do \
@@ -132,6 +163,10 @@ $(VENV)/engines: $(VENV)/crankcheck
 
 $(VENV)/docs: $(VENV)/crankcheck
 	$(PIP) install --constraint constraints.txt --group docs
+	touch $@
+
+$(VENV)/release: $(VENV)/crankcheck
+	$(PIP) install --constraint constraints.txt --group release
 	touch $@
 
 $(VENV)/benchmark: $(VENV)/crankcheck

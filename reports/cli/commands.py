@@ -42,7 +42,8 @@ Draw the diagrams of a sweep as SVG and PDF, for a paper."""),
     "stability": Command("requests.stability:StabilityRequest", COMPARE, """
 Grade engines on hard cases; find how far each holds them.
 
-The exit code is 0; with --at it is 1 where the value is not held."""),
+The exit code is 0; it is 1 with --at where the value is not held, and with --baseline where an
+outcome got worse or a critical value moved by more than its doubt."""),
     "history": Command("requests.history:HistoryRequest", COMPARE, """
 Repeat a verification with several versions of an engine."""),
     "diff": Command("requests.diff:DiffRequest", COMPARE, """

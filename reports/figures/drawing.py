@@ -12,7 +12,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from reports.output.numbers import floor_words
-from reports.results.lines import Line, Named, named
+from reports.results.lines import COLOURS, SYMBOLS, Line, Named, looks
 from reports.results.overview import Report
 
 
@@ -78,7 +78,8 @@ def _positive(values: pd.Series[float]) -> pd.Series[bool]:
     return (values > 0.0) & (values < math.inf)
 
 
-MARKERS = ("o", "s", "^", "D", "v", "<", ">", "p", "X", "P", "h", "*")
+HOURGLASS = ((-1, 1), (1, 1), (-1, -1), (1, -1))
+MARKERS = dict(zip(SYMBOLS, ("o", "s", "D", "^", "P", "*", "v", HOURGLASS, "X"), strict=True))
 DASHES: tuple[tuple[float, ...], ...] = (
     (),
     (4.0, 1.5),
@@ -89,28 +90,13 @@ DASHES: tuple[tuple[float, ...], ...] = (
     (9.0, 2.0),
 )
 """Lengths of dashes and gaps in line widths; the empty one is a whole line."""
-COLOURS = (
-    ("#0a2a4d", "#1f5f9e", "#4a90c9", "#79b1dc"),
-    ("#7a1f0f", "#c04a1d", "#d97b35", "#dc9f66"),
-    ("#0f4023", "#2f7d4c", "#55a572", "#84bf97"),
-    ("#3b1a5a", "#71479f", "#9877bd", "#b89fd3"),
-    ("#00494f", "#00828c", "#3fb0b8", "#8fd0d4"),
-    ("#6d0f45", "#b02a77", "#d0609f", "#e0a0c4"),
-    ("#6b4a00", "#a87900", "#d1a52b", "#e0c477"),
-    ("#3a2a20", "#6f5544", "#9a806e", "#bfab9d"),
-    ("#222222", "#5c5c5c", "#8c8c8c", "#b5b5b5"),
-)
-"""Hues of the engines, from dark to light."""
-SIZES = {True: (3.0, 3.4, 3.8, 4.2), False: (2.6, 4.0, 5.4, 6.0)}
-"""Sizes of filled and open markers [point]: open ones of equal curves stand around each other."""
 
 
 @dataclass(frozen=True)
 class Mark:
     """Look of the curve of a variant."""
 
-    marker: str
-    filled: bool
+    marker: object
     dashes: tuple[float, ...]
     colour: str
     size: float
@@ -136,31 +122,27 @@ class Mark:
         return {
             "marker": self.marker,
             "markersize": self.size,
-            "markerfacecolor": self.colour if self.filled else "none",
+            "markerfacecolor": self.colour,
             "markeredgecolor": self.colour,
             "markeredgewidth": 0.8,
         }
 
 
 def marks(lines: Iterable[Line]) -> Mapping[Named, Mark]:
-    """Return a mark for each variant, the same in all figures of a store.
+    """Return a mark for each variant: its look on the page, on white paper.
 
-    No two have the same marker and dashes; engines differ in filling and hue as well.
+    No two have the same marker and dashes.
     """
-    names = list(dict.fromkeys(named(line) for line in lines))
-    engines = list(dict.fromkeys(engine for engine, _, _ in names))
-    before = dict.fromkeys(engines, 0)
+    before: Counter[str] = Counter()
     every: dict[Named, Mark] = {}
-    for name in names:
-        at, k = engines.index(name[0]), before[name[0]]
-        before[name[0]] += 1
+    for name, look in looks(lines).items():
         every[name] = Mark(
-            marker=MARKERS[k % len(MARKERS)],
-            filled=at % 2 == 0,
-            dashes=_dashes(k // len(MARKERS) * len(engines) + at),
-            colour=COLOURS[at % len(COLOURS)][k % len(COLOURS[0])],
-            size=SIZES[at % 2 == 0][k % len(COLOURS[0])],
+            marker=MARKERS[look.symbol],
+            dashes=_dashes(before[look.engine]),
+            colour=COLOURS[look.colour],
+            size=0.36 * look.size,  # [point]
         )
+        before[look.engine] += 1
     return every
 
 

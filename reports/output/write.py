@@ -44,6 +44,24 @@ def check_file(
     _check_place(path, option)
 
 
+PAGES = (".html", ".htm")
+DOCUMENTS = (b"{", b"<?xml", b"<!doctype html", b"## crankcheck")
+TABLES = (b"scene,", b"fault,")
+"""First bytes of what commands write: JSON, JUnit, pages and Markdown that name crankcheck; CSV."""
+
+
+def _refuse_foreign(path: Path, option: str) -> None:
+    """Refuse a file that is there, with content, and is no document of a command. Raises
+    CrankcheckError."""
+    raw = path.read_bytes() if path.is_file() and not _is_stream(path) else b""
+    ours = raw.startswith(TABLES) or (raw.startswith(DOCUMENTS) and b"crankcheck" in raw)
+    if raw and not ours:
+        raise CrankcheckError(
+            f"{option} {path}: there is a file that crankcheck did not write; name another, or "
+            "remove it"
+        )
+
+
 def refuse_link(path: Path, option: str) -> None:
     """Refuse a symbolic link. Raises CrankcheckError that names its target."""
     if path.is_symlink():
@@ -134,6 +152,12 @@ class Outputs:
     folder: Path | None = None
     names: Mapping[str, str] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        """Take a folder that is named as a page for the file of the option -o."""
+        if "-o" in self.names.values() and self.folder and self.folder.suffix in PAGES:
+            object.__setattr__(self, "files", {**self.files, "-o": self.folder})
+            object.__setattr__(self, "folder", None)
+
     def check(self, inputs: Iterable[Path | None] = ()) -> None:
         """Refuse files, and ``names`` in the folder, that could not be written, two of all these
         that are one file, and one that is read (``inputs``). Raises CrankcheckError."""
@@ -141,6 +165,9 @@ class Outputs:
         read = list(inputs)
         for option, path in outputs:
             check_file(path, option, inputs=read)
+            if not option.startswith("--write"):  # scenes and maps, which their owner edits
+                with _looking_at(path, option):
+                    _refuse_foreign(path, option)
         if self.folder is not None:
             check_folder(self.folder, "-o", self.names, inputs=read)
             outputs += [("-o", self.folder / name) for name in self.names]

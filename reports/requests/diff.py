@@ -6,12 +6,12 @@ from typing import Annotated
 
 from rich.console import Console
 
-from models.errors import CrankcheckError
 from reports.diff.document import markdown, show_diff, suite
 from reports.output.console import tell
 from reports.output.formats import junit
 from reports.output.write import Outputs
-from reports.requests.options import argument, option, output_option
+from reports.requests.options import TextFormat, argument, output_option
+from reports.requests.shown import present
 from reports.results.changes import compare
 from reports.results.stored_runs import CELLS, FACTS, read_run
 from reports.store.folder import paths_of
@@ -28,9 +28,6 @@ def stored_files(*folders: Path | None) -> list[Path]:
             *(part for table in TABLES for part in paths_of(folder, table)),
         )
     ]
-
-
-FORMATS = ("text", "md")
 
 
 @dataclass(frozen=True)
@@ -50,7 +47,7 @@ class DiffRequest:
         None
     )
     new_version: Annotated[str | None, "The same of NEW."] = None
-    format: Annotated[str, option("Form of the output.", "text|md")] = "text"
+    format: TextFormat = "text"
     output: Annotated[Path | None, output_option("Write Markdown, for a pull request.")] = None
     junit: Annotated[Path | None, "Write JUnit XML, a case per cell."] = None
 
@@ -65,8 +62,6 @@ class DiffRequest:
         Raises CrankcheckError for a folder that holds no run, two runs with nothing in common, an
         option that makes no sense; a damaged run that may have lost a cell of the other.
         """
-        if self.format not in FORMATS:
-            raise CrankcheckError(f"--format {self.format!r}: unknown; use {' or '.join(FORMATS)}")
         read = stored_files(self.old, self.new)
         outputs = Outputs({"-o": self.output, "--junit": self.junit})
         outputs.check(read)
@@ -78,8 +73,6 @@ class DiffRequest:
         page = markdown(diff, self.strict)
         contents = {"-o": lambda: page, "--junit": lambda: junit(suite(diff, self.strict))}
         with outputs.written(contents):
-            if self.format == "md" and not self.output:
-                console.print(page, end="", markup=False, highlight=False, soft_wrap=True)
-            else:
-                show_diff(console, diff, self.strict)
+            shown = "text" if self.output else self.format
+            present(console, shown, lambda: page, lambda to: show_diff(to, diff, self.strict))
         return diff.code(self.strict)

@@ -32,7 +32,7 @@ from reports.protocol.way import way_of
 from reports.requests import any_log, arguments, options
 from reports.requests.compare import CellVerdict, verdict_of_run
 from reports.requests.options import argument, option, output_option, seconds
-from reports.requests.shown import Shown
+from reports.requests.shown import Shown, present
 from reports.requests.solution import drawn
 from sim.engine import Run
 
@@ -289,9 +289,6 @@ def target_of(target: Target) -> dict[str, float]:
     return {EVERY: positive("--target", target, "pure numbers, such as 1e-3")}
 
 
-FORMATS = ("text", "md")
-
-
 @dataclass(frozen=True)
 class JudgeRequest:
     scene: options.SceneName
@@ -313,7 +310,7 @@ class JudgeRequest:
     require: Annotated[
         Sequence[str], option("Quantity or body that has to be in the log.", "NAME")
     ] = ()
-    format: Annotated[str, option("Form of the output.", "text|md")] = "text"
+    format: options.TextFormat = "text"
     json: Annotated[Path | None, "Write errors and findings as JSON."] = None
     junit: Annotated[Path | None, "Write JUnit XML, a case per error."] = None
     output: Annotated[Path | None, output_option("Write a page, .html.")] = None
@@ -344,18 +341,13 @@ class JudgeRequest:
         (judged,) = known.marked([judge_log(log, asked)], self.known)
         facts = provenance({})
         with outputs.written(contents(judged, facts)):
-            if self.format == "md":
-                text = markdown(judged, facts)
-                console.print(text, markup=False, highlight=False, soft_wrap=True)
-            else:
-                show(console, judged, facts)
+            text = f"{markdown(judged, facts)}\n"
+            present(console, self.format, lambda: text, lambda to: show(to, judged, facts))
         return int(judged.verdict == "out" or (self.strict_known and bool(judged.mended)))
 
 
 def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogRequest:
     """The request for the judgement. Raises CrankcheckError for a fault that shows beforehand."""
-    if request.format not in FORMATS:
-        raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
     if request.write_map is not None:
         check_file(request.write_map, "--write-map", (".toml",))
     if request.output is not None:

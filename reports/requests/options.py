@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, get_type_hints
 
 import typer
 
@@ -83,6 +83,7 @@ KnownPath = Annotated[
 WriteKnown = Annotated[Path | None, "Write the failures of this run as known ones, as TOML."]
 StrictKnown = Annotated[bool, "Exit 1 where a known failure is right by now."]
 Jobs = Annotated[int, option("Processes; 0: one per processor.", min=0, max=1024)]
+TextFormat = Annotated[Literal["text", "md"], option("What is printed.", "text|md")]
 PaperSize = Annotated[str, option("A5, A4, A3, A2, or WIDTHxHEIGHT in mm.", "SIZE")]
 
 
@@ -215,7 +216,9 @@ class VerifyOptions:
     junit: Annotated[Path | None, "Write JUnit XML."] = None
     csv: Annotated[Path | None, "Write the cells as CSV."] = None
     json: Annotated[Path | None, "Write cells and findings as JSON."] = None
-    folder: Annotated[Path | None, output_option("Write all of them into a folder.")] = None
+    folder: Annotated[
+        Path | None, output_option("Write all of them into a folder, or a page, .html.")
+    ] = None
     baseline: Annotated[
         Path | None, option("Folder of an earlier run; exit 1 when worse than it.", "DIR")
     ] = None
@@ -229,6 +232,7 @@ class VerifyOptions:
     known: KnownPath = None
     write_known: WriteKnown = None
     strict_known: StrictKnown = False
+    format: TextFormat = "text"
     mjcf: Annotated[
         Path | None,
         of_model("A MuJoCo model, run as it is; needs --drive JOINT and --speed.", "FILE"),

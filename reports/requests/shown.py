@@ -1,4 +1,5 @@
-"""Base of all results: the text that the command prints, and a picture of it for notebooks.
+"""Base of all results: the text that the command prints, as a terminal, a notebook, a page and
+Markdown show it.
 
 The HTML needs no scripts or style sheets, and has the colours of the notebook, light or dark.
 """
@@ -7,17 +8,21 @@ from __future__ import annotations
 
 import io
 import itertools
-from collections.abc import Callable, Iterable
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
+from pathlib import Path
 from typing import Any
 
+from markupsafe import Markup
 from rich.console import Console, Group
 from rich.markup import render
 from rich.style import Style
 from rich.table import Table
 from rich.text import Text
 
-from reports.output.console import TABLE_WIDTH
+from reports.output.console import TABLE_WIDTH, tell
+from reports.output.formats import counted, plain, table
 
 
 class Shown:
@@ -48,6 +53,9 @@ class Shown:
 
 
 Print = Callable[[Console], None]
+Convert = Callable[[Text | Table, Style | str], str]
+COMMENT = 60_000
+"""Bytes of Markdown; a comment on GitHub takes 65,536."""
 WIDE = 200
 """Columns of a page: room for every column of a table."""
 COLOURS = {"red": "#d9596b", "yellow": "#b97f1f", "green": "#459150", "cyan": "#15889a"}
@@ -71,10 +79,47 @@ def as_text(show: Print) -> str:
     return "\n".join(line.rstrip() for line in console.file.getvalue().rstrip().split("\n"))
 
 
-def as_html(drawn: str, show: Print) -> str:
+def present(console: Console, format: str, page: Callable[[], str], *shows: Print) -> None:
+    """Print an answer, or the ``page`` of it in Markdown (``format`` md); append that to the
+    summary of the job where GitHub names a file for it."""
+    summary = os.environ.get("GITHUB_STEP_SUMMARY")
+    text = page() if summary or format == "md" else ""
+    if format == "md":
+        console.print(text, end="", markup=False, highlight=False, soft_wrap=True)
+    for show in shows if format != "md" else ():
+        show(console)
+    try:
+        with Path(summary or os.devnull).open("a", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        tell([f"GITHUB_STEP_SUMMARY {summary}: {error.strerror}; nothing is added to it"])
+
+
+def as_markdown(title: str, *shows: Print) -> str:
+    """The printed parts below a title, in `COMMENT` bytes; further parts are counted."""
+    collector = Collector(_markdown)
+    for show in shows:
+        show(collector)
+    parts = counted(filter(None, collector.parts), COMMENT, "parts")
+    return "\n\n".join([f"## crankcheck {title}", *parts]) + "\n"
+
+
+def as_page(title: str, facts: Mapping[str, str], drawn: str, *shows: Print) -> str:
+    """A page of the drawings and the printed parts."""
+    from reports.page.build import Head, assembled  # which nothing else here needs
+    from reports.page.sections.section import Section
+
+    command, _, verdict = title.partition(": ")
+    head = Head(f"crankcheck {command}", [verdict], facts["made"], "verdict")
+    words = {"shown": Markup(as_html(drawn, *shows))}
+    return assembled(head, [Section("verdict", "Verdict", "shown.html", words)])
+
+
+def as_html(drawn: str, *shows: Print) -> str:
     """A drawing, and below it the printed parts, each table as a table."""
-    collector = Collector()
-    show(collector)
+    collector = Collector(_html)
+    for show in shows:
+        show(collector)
     parts = "".join(collector.parts)
     return (
         '<div class="crankcheck" style="font-family:sans-serif;font-size:13px;line-height:1.4;'
@@ -83,30 +128,46 @@ def as_html(drawn: str, show: Print) -> str:
 
 
 class Collector(Console):
-    """A console that keeps printed objects as HTML."""
+    """A console that keeps printed objects as HTML or Markdown."""
 
-    def __init__(self) -> None:
+    def __init__(self, convert: Convert) -> None:
         super().__init__(file=io.StringIO(), width=WIDE, force_jupyter=False)
         self.parts: list[str] = []
+        self.convert = convert
 
     def print(self, *objects: Any, **options: Any) -> None:
         """Keep the objects; nothing is written."""
-        style = options.get("style") or ""
-        for each in objects:
-            self.parts += _html(each, style, plain=options.get("markup") is False)
+        style, plain = options.get("style") or "", options.get("markup") is False
+        for printed in objects:
+            for each in printed.renderables if isinstance(printed, Group) else [printed]:
+                text = each if isinstance(each, Text | Table) else _text(str(each), plain=plain)
+                self.parts.append(self.convert(text, style))
 
 
-def _html(printed: object, style: Style | str, *, plain: bool) -> Iterable[str]:
-    if isinstance(printed, Group):
-        for each in printed.renderables:
-            yield from _html(each, style, plain=plain)
-    elif isinstance(printed, Table):
-        yield _table(printed)
-    else:
-        text = printed if isinstance(printed, Text) else _text(str(printed), plain=plain)
-        if text.plain.strip():
-            css = f"margin:4px 0;white-space:pre-wrap;{_css(style)}"
-            yield f'<div style="{css}">{_spans(text)}</div>'
+def _html(printed: Text | Table, style: Style | str) -> str:
+    if isinstance(printed, Table):
+        return _table(printed)
+    css = f"margin:4px 0;white-space:pre-wrap;{_css(style)}"
+    return f'<div style="{css}">{_spans(printed)}</div>' * bool(printed.plain.strip())
+
+
+def _markdown(printed: Text | Table, style: Style | str) -> str:
+    if isinstance(printed, Text):
+        return "  \n".join(plain(line) for line in printed.plain.splitlines())
+    rows = [[_flat(cell) for cell in row] for row in _rows(printed)]
+    heads = [_flat(each.header) + ":" * (each.justify == "right") for each in printed.columns]
+    if not printed.show_header or not any(heads):
+        return "\n".join(f"- {plain(' '.join(row))}" for row in rows)
+    title = f"**{plain(_flat(printed.title))}**\n\n" * bool(printed.title)
+    return title + table(heads, rows, COMMENT // 3, "rows")
+
+
+def _rows(table: Table) -> Iterable[Sequence[object]]:
+    return zip(*(column.cells for column in table.columns), strict=True)
+
+
+def _flat(cell: object) -> str:
+    return (cell if isinstance(cell, Text) else render(str(cell))).plain
 
 
 def _text(text: str, *, plain: bool) -> Text:
@@ -119,10 +180,7 @@ def _table(table: Table) -> str:
         f"{CELL};text-align:{column.justify}{';white-space:nowrap' * column.no_wrap}"
         for column in table.columns
     ]
-    body = "".join(
-        _row("td", looks, row)
-        for row in zip(*(column.cells for column in table.columns), strict=True)
-    )
+    body = "".join(_row("td", looks, row) for row in _rows(table))
     heads = [column.header for column in table.columns]
     has_heads = table.show_header and any(map(str, heads))
     head = f"<thead>{_row('th', [f'{look};{HEAD}' for look in looks], heads)}</thead>" * has_heads

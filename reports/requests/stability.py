@@ -20,10 +20,21 @@ from reports.output.write import Outputs, provenance
 from reports.plan.requirements import PROFILES, chosen_engines, chosen_profiles
 from reports.plan.singular import silent_note
 from reports.protocol.way import WAYS, way
-from reports.requests.options import Engines, Forces, Jobs, argument, option, output_option
+from reports.requests.options import (
+    Engines,
+    Forces,
+    Jobs,
+    TextFormat,
+    argument,
+    given,
+    option,
+    output_option,
+)
+from reports.requests.shown import Print, as_markdown, present
 from reports.selftest import trial
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.table import place_row, show_faults
+from reports.stability.baseline import baseline, changes, is_worse, show_changes
 from reports.stability.case import Case
 from reports.stability.grading import CATALOGUE
 from reports.stability.matrix import FILE, Matrix, read_matrix, run_rows, to_json
@@ -43,6 +54,10 @@ class StabilityRequest:
     profiles: Annotated[Sequence[str], option("Profile; may be repeated.", "--profile")] = ()
     at: Annotated[float | None, "Only this value of the one named case."] = None
     folder: Annotated[Path | None, output_option("Folder for matrix, table and page.")] = None
+    baseline: Annotated[
+        Path | None, option("Folder, or JSON, of an earlier run; exit 1 when worse than it.", "DIR")
+    ] = None
+    format: TextFormat = "text"
     limit_s: Annotated[float, "Longest time for a run, in seconds."] = 120.0
     memory_gb: Annotated[float, "Most memory for a run, in GB."] = 4.0
     jobs: Jobs = 0
@@ -51,9 +66,9 @@ class StabilityRequest:
     elastic: Annotated[bool, "Those of elastic links, which are not among all."] = False
 
     def run(self, console: Console, progress: Console) -> int:
-        """Answer, and return the exit code: 0, or for one value 1 where it is not held. Raises
-        CrankcheckError for an unknown case, engine or profile, a value that has no reference, or a
-        folder that can not be written."""
+        """Answer, and return the exit code: 0, or 1 where one value is not held, or anything is
+        worse than in the baseline. Raises CrankcheckError for an unknown case, engine or profile, a
+        value that has no reference, or a folder that can not be written or compared with."""
         cases = _cases(self.cases, {"free": self.free, "elastic": self.elastic})
         engines = chosen_engines(self.engines)
         profiles = [name for name, _ in chosen_profiles(self.profiles or PROFILES, engines)]
@@ -70,6 +85,7 @@ class StabilityRequest:
             CaseLine(case.name, engine_, profile, self.forces)
             for case, engine_, profile in itertools.product(cases, engines, profiles)
         ]
+        base = baseline(self.baseline, lines) if self.baseline else None
         with progress_bar(progress, "lines", len(lines)) as advance:
             graded = run_lines(lines, self.jobs, limits, lambda _: advance())
         matrix = Matrix(
@@ -79,11 +95,15 @@ class StabilityRequest:
             critical=tuple(line.critical for line in graded),
             pictures=tuple(picture for line in graded for picture in line.pictures),
         )
+        found = changes(base, matrix) if base else []
+        shows: list[Print] = [partial(show, matrix=matrix)]
+        shows += [partial(show_changes, found=found)] * bool(base)
         with outputs.written({name: partial(of, matrix) for name, of in CONTENTS.items()}):
-            show(console, matrix)
+            page = partial(as_markdown, "stability", *shows[::-1])
+            present(console, self.format, page, *shows)
         if self.folder is not None:
             say(console, f"{self.folder}: {', '.join(CONTENTS)}")
-        return 0
+        return int(is_worse(found))
 
 
 def _cases(names: Sequence[str], asked: Mapping[str, bool]) -> list[Case]:
@@ -132,8 +152,11 @@ def _single(
     assert value is not None
     if len(cases) != 1:
         raise CrankcheckError(f"--at {value:g}: a value of one case; found {len(cases)}, name one")
-    if request.folder is not None:
-        raise CrankcheckError("--at and -o: one value is shown and not stored; leave one of them")
+    for option_ in given(request, "folder", "baseline"):
+        raise CrankcheckError(
+            f"--at and {option_}: one value is shown, and neither stored nor compared; leave one "
+            "of them"
+        )
     case, code = cases[0], 0
     case.refuse(value)
     for name, profile in itertools.product(engines, profiles):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, cast
 
 from rich.console import Console
@@ -22,8 +23,10 @@ from reports.plan.singular import gives_forces, silent_note
 from reports.protocol.length import Length
 from reports.protocol.way import driven_by, laid_out, way_of
 from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
+from reports.requests.shown import Print, as_markdown, as_page, present
+from reports.requests.solution import drawn
 from reports.verify.advised import check_all
-from reports.verify.table import show, suite
+from reports.verify.table import show, suite, summary
 from sim.engine import Drive
 from sim.registry import engine
 
@@ -49,12 +52,12 @@ class VerifyRequest(VerifyOptions):
         refuse_of_models(self)
         cells = plan(self)
         outputs = Outputs(self.files, self.folder, IN_FOLDER)
-        outputs.check([*find_scenes(self.names), self.known])
-        known.marked([], self.known)  # raises for a faulty file
         if self.baseline is not None:  # which ``-o`` may go on from, and no other output write over
             from reports.requests.diff import stored_files
 
             Outputs(self.files).check(stored_files(self.baseline))
+        outputs.check([*find_scenes(self.names), self.known])
+        known.marked([], self.known)  # raises for a faulty file
         digests = _digests(self)
         silent = (
             silent_note(requirements.chosen_engines(())) if self.forces and not self.engines else ""
@@ -76,13 +79,16 @@ class VerifyRequest(VerifyOptions):
             from reports.results.runs import run_of
 
             diff = compare(base, run_of(checked, facts, digests), self.factor)
-        with outputs.written(contents(checked, facts, digests, diff)):
-            show(console, checked, facts)
-            if diff:
-                from reports.diff.document import show_diff
+        shows: list[Print] = [partial(show, checked=checked, facts=facts)]
+        if diff:
+            from reports.diff.document import show_diff
 
-                console.print()
-                show_diff(console, diff)
+            shows.append(partial(show_diff, diff=diff))
+        title = f"verify: {summary(checked).plain}"
+        scenes = {one.cell.scene.name: one.cell.scene for one in checked}.values()
+        page = {"verify.html": lambda: as_page(title, facts, "".join(map(drawn, scenes)), *shows)}
+        with outputs.written(contents(checked, facts, digests, diff) | page):
+            present(console, self.format, lambda: as_markdown(title, *shows[::-1]), *shows)
         mended = self.strict_known and any(one.mended for one in checked)
         return _code(checked, diff, progress) or int(mended)
 
@@ -207,6 +213,7 @@ IN_FOLDER = {
     "verify.json": "--json",
     "verify.junit.xml": "--junit",
     "errors.parquet": "",
+    "verify.html": "-o",
 }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from numbers import Real
 from os import PathLike
 from typing import TYPE_CHECKING
@@ -22,11 +23,11 @@ from reports.output.write import Outputs, check_file, provenance
 from reports.own_model.account import read
 from reports.own_model.assembly import ModelRequest
 from reports.own_model.judged import JudgedModel, run_lines
-from reports.own_model.table import document, is_diff, recommended_head, show
+from reports.own_model.table import document, is_diff, recommended_head, show, verdict_text
 from reports.plan.steps import TURNS, positive
 from reports.requests import arguments
 from reports.requests.options import PRESCRIBED, VerifyOptions, given
-from reports.requests.shown import Shown
+from reports.requests.shown import Shown, as_markdown, present
 from reports.verify.table import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
 from sim.registry import engine
@@ -157,7 +158,7 @@ IN_FOLDER = {
     "scene.toml": "--write-scene",
     "recommended.diff": "",
     "recommended.txt": "",
-    "page.html": "",
+    "page.html": "-o",
 }
 NOT_OF_MODELS = [
     *("scenes", "engines", "profiles", "jobs", "baseline"),
@@ -187,7 +188,8 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
     name = reading_engine()
     facts = provenance({name: engine(name).version()})
     with outputs.written(_contents(judged, facts)):
-        show(console, judged, facts)
+        told, title = partial(show, judged=judged, facts=facts), verdict_text(judged)
+        present(console, request.format, lambda: as_markdown(f"verify: {title}", told), told)
     mended = int(request.strict_known and bool(judged.own.mended))
     return {"within": mended, "known": mended, "out": 1}.get(judged.verdict, 2)
 

@@ -230,6 +230,12 @@ FAMILY = 4
 FAMILIES = 3
 ALONE = 6
 """Colours of further engines, after those of the families: one each."""
+COLOURS = (
+    *("#11365a", "#1e6d93", "#00a07e", "#4c0d84", "#6f0a2c", "#c8402a"),
+    *("#c97c00", "#b06a8f", "#4c480b", "#48966a", "#8f8f0f", "#164937"),
+    *("#1551ff", "#b60872", "#8282fb", "#0401c2", "#fd36c5", "#8e3bc3"),
+)
+"""Colours on light paper, as in the style sheet of the page."""
 SYMBOLS = (
     *("circle", "square", "diamond", "triangle-up", "cross", "star"),
     *("triangle-down", "hourglass", "x"),

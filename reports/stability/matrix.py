@@ -187,14 +187,14 @@ def to_json(matrix: Matrix) -> str:
 
 
 def read_matrix(folder: Path) -> Matrix:
-    """Return the matrix stored in a folder.
+    """Return the matrix stored in a folder, or in a JSON file that is named itself.
 
     Raises
     ------
     CrankcheckError
         No such file, one that is damaged or too large, or one of another format.
     """
-    path = folder / FILE
+    path = folder if folder.suffix == ".json" else folder / FILE
     if not os.path.lexists(path):
         raise CrankcheckError(
             f"{folder}: no {FILE} in it; `crankcheck stability -o {folder}` makes one"

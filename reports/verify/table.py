@@ -220,7 +220,7 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
     for one in checked:
         if text := one.known_text:
             hanging(console, f"{one.cell.label}: ", text, style="yellow")
-    console.print(_summary(checked, failed))
+    console.print(summary(checked))
     console.print(footer(checked, facts), style="dim", highlight=False)
 
 
@@ -265,8 +265,10 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
         console.print()
 
 
-def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
+def summary(checked: Sequence[Checked]) -> Text:
+    """Return the verdict on all gated cells, in a line."""
     gated = [one for one in checked if one.cell.gated]
+    failed = [one for one in gated if one.verdict not in ("within", "known")]
     scenes = len({one.cell.scene.name for one in gated})
     engines = len({one.cell.engine for one in gated})
     counted = f"{count(scenes, 'scene')} x {count(engines, 'engine')}"

@@ -199,7 +199,8 @@ def _solutions(
     ]
     picture = "" if sheet is None else base64.b64encode(sheet).decode()
     words = {"rows": rows, "source": task.source, "counted": counted, "picture": picture}
-    return Section("solutions", "Solutions", "synthesis_solutions.html", words)
+    template, styles = "synthesis_solutions.html", ("forces.css",)
+    return Section("solutions", "Solutions", template, words, styles=styles)
 
 
 def construction_name(number: int, kind: str) -> str:

@@ -24,8 +24,7 @@
   let ticket = 0; // of the next frame, or of the next step of one who wants no motion
   let before = null;
   let rest = 0; // milliseconds to stand still yet
-  let rounds = Infinity;
-  let greeted = false;
+  let stopped = false; // by hand: else the mechanism moves while it is seen, where motion is welcome
 
   /** The angle of the driver, as it is told. */
   function driver(position) {
@@ -91,12 +90,7 @@
       clock += gone / pace();
       if (stop > clock - gone / pace() && clock >= stop && stop >= start) [clock, rest] = [stop, REST_MS];
     }
-    if (clock >= end) {
-      rounds -= 1;
-      if (rounds > 0) clock = start;
-      else run(false);
-      clock = Math.min(clock, end);
-    }
+    if (clock >= end) clock = start;
     draw();
     if (playing) ticket = requestAnimationFrame(frame);
   }
@@ -109,10 +103,11 @@
     if (playing) ticket = setTimeout(skip, STILL_MS);
   }
 
-  function run(on, turns = Infinity) {
-    const isOver = crankcheck.calm.matches ? next() === clock : clock >= end;
-    if (on && (isOver || clock === last * UNIT)) clock = 0;
-    [playing, before, rounds] = [on, null, turns];
+  /** Play or stop; by hand from the first step where the whole drawing stands. */
+  function run(on, byHand = false) {
+    stopped = byHand && !on;
+    if (byHand && on && (next() === clock || clock === last * UNIT)) clock = 0;
+    [playing, before] = [on, null];
     play.textContent = on ? "Pause" : "Play";
     cancelAnimationFrame(ticket);
     clearTimeout(ticket);
@@ -123,8 +118,7 @@
 
   /** Stop, and stand there. */
   function go(at) {
-    greeted = true;
-    run(false);
+    run(false, true);
     stand(at);
   }
 
@@ -134,8 +128,7 @@
     if (event.key === "ArrowRight" || (event.target === slider && event.key === "ArrowUp")) go(next());
     else if (event.key === "ArrowLeft" || (event.target === slider && event.key === "ArrowDown")) go(previous());
     else if (event.key === " " && (!isBusy || event.target === slider)) {
-      greeted = true;
-      run(!playing);
+      run(!playing, true);
     } else return;
     event.preventDefault();
   }
@@ -150,21 +143,16 @@
 
   slider.max = String(end);
   slider.addEventListener("input", () => go(Number(slider.value)));
-  play.addEventListener("click", () => {
-    greeted = true;
-    run(!playing);
-  });
+  play.addEventListener("click", () => run(!playing, true));
   part("back").addEventListener("click", () => go(previous()));
   part("forward").addEventListener("click", () => go(next()));
   items.forEach((item, k) => item.firstElementChild.addEventListener("click", () => go((k + 1) * UNIT)));
   document.addEventListener("keydown", onKey);
   new ResizeObserver(refit).observe(picture);
   new IntersectionObserver((entries) => {
-    if (!entries.some((entry) => entry.isIntersecting)) run(false); // nobody looks
-    else if (!greeted && !crankcheck.calm.matches) {
-      greeted = true;
-      run(true, 1);
-    }
+    if (stopped) return;
+    if (!entries.at(-1).isIntersecting) run(false); // nobody looks
+    else if (!playing && !crankcheck.calm.matches) run(true); // on from the finished drawing
   }, { threshold: 0.5 }).observe(picture);
   refit();
 })();

@@ -2,13 +2,15 @@
 // Buttons that copy the text beside them, or select it where the browser does not let them.
 
 for (const button of document.querySelectorAll("button.copy")) {
-  const text = button.parentElement.querySelector("pre");
+  const drawer = document.getElementById(button.dataset.copies) ?? button.parentElement;
+  const text = drawer.querySelector("pre");
   button.hidden = false;
   button.addEventListener("click", async () => {
     try {
       await navigator.clipboard.writeText(text.textContent);
       button.textContent = "Copied";
     } catch {
+      drawer.open = true; // what is closed can not be selected
       getSelection().selectAllChildren(text);
       button.textContent = "Selected";
     }

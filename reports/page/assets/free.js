@@ -82,7 +82,7 @@
     shown = own.scenes.find((each) => each.name === scene.value);
     const there = new Set(shown.lines.map((line) => line.look));
     const known = new Set(own.judged.filter((look) => there.has(look)));
-    const first = (look) => !known.size || known.has(look.number);
+    const first = (look) => !known.size || known.has(look.number) || look.variant === "as-shipped";
     legend = crankcheck.legend(part("legend"), crankcheck.lookGroups(there, first), moved);
     orders = crankcheck.legend(part("orders"), crankcheck.lookGroups(there), against);
     offerSteps();
@@ -90,6 +90,7 @@
     for (const row of table.tBodies[0].rows) row.hidden = row.dataset.scene !== scene.value;
     part("picture").closest(".pair").style.display = shown.drawing ? "" : "none"; // no run moved
     if (shown.drawing) stage.set(shown.drawing);
+    if (shown.drawing) stage.makeVisible();
     moved();
     errors();
     if (shown.drawing && !started) stage.start();
@@ -104,4 +105,13 @@
   });
   error.addEventListener("change", errors);
   choose();
+  const lineOf = (at) => own.scenes.find((each) => each.name === at.scene)?.lines.find(({ look }) => String(look) === at.look);
+  crankcheck.leads("free", lineOf, (at) => {
+    const cell = lineOf(at).cells.find(({ dt_s }) => Math.abs(dt_s * Number(at.steps) - 1) < 1e-6);
+    scene.value = at.scene;
+    choose();
+    if (cell) step.value = cell.dt;
+    document.querySelector(`#free-legend [data-item="${at.look}"]`).checked ||= true;
+    moved();
+  });
 })();

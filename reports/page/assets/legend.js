@@ -55,8 +55,8 @@ crankcheck.alone = {
 
 /**
  * Fill a container with the switches of some groups: `{title, items: [{id, label, paint, on}]}`, and
- * `note` and `family` where they have them. `changed` is called after every change. Gives `on(id)`
- * and `note(id, text)`.
+ * `note` and `family` where they have them. `changed` is called after every change. Gives `on(id)`,
+ * `note(id, text)`, and `kept(id)`: whether it is on if all are shown; undefined if it is not here.
  */
 crankcheck.legend = (container, groups, changed) => {
   const { html, alone } = crankcheck;
@@ -128,6 +128,7 @@ crankcheck.legend = (container, groups, changed) => {
   only(alone.shown);
   return {
     on: (id) => boxes.get(id)?.checked ?? false,
+    kept: (id) => before?.get(boxes.get(id)) ?? boxes.get(id)?.checked,
     note: (id, text) => {
       if (notes.has(id)) notes.get(id).textContent = text;
     },

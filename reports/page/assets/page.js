@@ -111,6 +111,15 @@ const crankcheck = (() => {
     });
   }
 
+  addEventListener("beforeprint", () => { // paper is light
+    const { theme } = document.documentElement.dataset;
+    document.documentElement.dataset.theme = "light";
+    retheme();
+    addEventListener("afterprint", () => {
+      choose(theme ?? system());
+      retheme();
+    }, { once: true });
+  });
   themeButton();
   return {
     embedded, unpacked, singles, html, svg, colour, short, readable, duration, onTheme,

@@ -7,9 +7,9 @@
  * `-readout`. `overlays(mechanism)` gives the runs to be drawn: `{name, rows, paint}`; `drawn` is
  * called after every drawing. A stage that stands still stands at `home(mechanism)`; going round
  * takes `lasts(mechanism)` milliseconds, after which it rests for `rest` times as long. A stage without
- * `-factor`, `-visible` and `-readout` is one of the reference alone.
+ * `-factor`, `-visible` and `-readout` is one of the reference alone, or `magnified()` by the factor of another.
  */
-crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = () => 5000, rest = 0, reach }) => {
+crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = () => 5000, rest = 0, reach, magnified }) => {
   const { short } = crankcheck;
   const part = (word) => document.getElementById(`${name}-${word}`);
   const [picture, factor, slider, play, readout] = ["picture", "factor", "slider", "play", "readout"].map(part);
@@ -21,8 +21,7 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
   let playing = false;
   let ticket = 0; // of the next frame
   let before = null; // when the last frame was drawn
-  let left = Infinity; // samples to go
-  let greeted = false; // it has moved by itself once
+  let stopped = false; // by hand: else it moves while it is seen, where motion is welcome
 
   const degrees = (at) => {
     const rounded = Math.round(mechanism.driver(at));
@@ -43,7 +42,7 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
 
   function draw() {
     const each = overlays(mechanism);
-    const cut = mechanism.show(position, each, Number(factor?.value ?? 1));
+    const cut = mechanism.show(position, each, Number(factor?.value ?? magnified?.() ?? 1));
     slider.value = String(Math.round(position));
     const [shown, said] = place(position);
     slider.setAttribute("aria-valuetext", said);
@@ -64,35 +63,26 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
     const last = mechanism.samples - 1;
     const round = last * (1 + rest);
     const moved = ((now - (before ?? now)) / lasts(mechanism)) * last;
-    left -= moved;
     clock = (clock + moved) % round;
     position = Math.min(clock, last);
     before = now;
-    if (left <= 0) {
-      stand(home(mechanism));
-      run(false);
-    }
     draw();
     if (playing) ticket = requestAnimationFrame(frame);
   }
 
-  /** Play or stop; `turns` is how often it goes round. */
-  function run(on, turns = Infinity) {
+  /** Play, round after round, or stop. */
+  function run(on) {
     if (!mechanism) return;
     if (on && !playing && position === home(mechanism)) stand(0);
     playing = on;
     before = null;
-    left = turns * (mechanism.samples - 1) * (1 + rest);
     play.textContent = on ? "Pause" : "Play";
     cancelAnimationFrame(ticket);
     if (on) ticket = requestAnimationFrame(frame);
   }
 
-  /** Go round once where motion is welcome. */
-  function greet() {
-    greeted = true;
-    if (!crankcheck.calm.matches) run(true, 1);
-  }
+  /** Move where motion is welcome, unless it was stopped by hand. */
+  const greet = () => run(!stopped && !crankcheck.calm.matches);
 
   /** Show another drawing; `draw` is left to the caller. */
   function set(shown) {
@@ -115,8 +105,12 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
   function start() {
     factor?.addEventListener("change", draw);
     part("visible")?.addEventListener("click", makeVisible);
-    play.addEventListener("click", () => run(!playing));
+    play.addEventListener("click", () => {
+      stopped = playing;
+      run(!playing);
+    });
     slider.addEventListener("input", () => {
+      stopped = true;
       run(false);
       stand(Number(slider.value));
       draw();
@@ -126,8 +120,8 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
       draw();
     }).observe(picture);
     new IntersectionObserver((entries) => {
-      if (!entries.some((entry) => entry.isIntersecting)) run(false); // nobody looks
-      else if (!greeted && !crankcheck.calm.matches) greet(); // to show that it moves
+      if (!entries.at(-1).isIntersecting) run(false); // nobody looks
+      else if (!playing) greet();
     }, { threshold: 0.5 }).observe(picture);
   }
 

@@ -38,6 +38,17 @@ for (const table of document.querySelectorAll("table.sortable")) {
   });
 }
 
+/** What names a cell or a line of cells (`data-look`, of a `-scene` and `-steps`) leads to what is known of it. */
+crankcheck.leads = (anchor, has, show) => {
+  for (const each of document.querySelectorAll("[data-look]")) {
+    if (!has(each.dataset)) continue;
+    const link = crankcheck.html("a", { href: `#${anchor}`, class: "known" });
+    link.append(...each.childNodes);
+    each.append(link);
+    link.addEventListener("click", () => show(each.dataset));
+  }
+};
+
 // A field that shows only the rows with its text in them.
 for (const field of document.querySelectorAll("input[data-filters]")) {
   const table = document.getElementById(field.dataset.filters);

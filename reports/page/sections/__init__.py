@@ -32,8 +32,8 @@ def _of_driven(build: Callable[[Report], Section | None]) -> Build:
 OF_WAYS = {name: cast(WaySection, own) for name, own in own_parts("section").items()}
 """Sections of ways, by the name of the way."""
 SECTIONS: dict[str, Build] = {
-    "engines": engines,
     "verdict": verdict,
+    "engines": engines,
     "recommendation": _of_driven(recommendation),
     "precision": _of_driven(precision),
     **{name: own.build for name, own in OF_WAYS.items()},

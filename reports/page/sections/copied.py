@@ -23,19 +23,23 @@ from sim.registry.offers import force_recipe
 RecommendationRow = dict[str, object]
 
 
-def recommendation(report: Report) -> Section:
-    """Return the section."""
+def recommended(report: Report) -> list[RecommendationRow]:
+    """Return the rows of the recommendations, the least demanding target first."""
     # Copied texts are written for the period of most lines.
     period_s = Counter(line.period_s for line in report.lines).most_common(1)[0][0]
-    # Engines side by side for each target, the least demanding first.
     ordered = sorted(report.recommendations, key=lambda one: -one.target)
     rows = [row for one in ordered for row in _rows(report, one, period_s)]
+    return [{**row, "id": f"settings-{number}"} for number, row in enumerate(rows)]
+
+
+def recommendation(report: Report) -> Section:
+    """Return the section."""
     return Section(
         anchor="recommendation",
         title="What to set",
         template="recommendation.html",
         words={
-            "rows": rows,
+            "rows": recommended(report),
             "scenes": count(len(report.scenes), "scene"),
             "noise": report.noise if math.isfinite(report.noise) else None,
             "timed": report.timed,

@@ -2,8 +2,10 @@
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+import shlex
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -15,14 +17,19 @@ from models.scene import Scene
 from reports.compare.free_facts import window_means
 from reports.describe.facts import describe_law, facts
 from reports.drawing import moving, shape
+from reports.judge.rules import RULES
 from reports.output.numbers import duration, floor_words
+from reports.page.sections.errors import DIAGRAMS, SHARES
 from reports.page.sections.section import BUDGET, Section, chosen, steps_held
+from reports.quantities import QUANTITIES
 from reports.results.error_parts import CurveBody, ErrorParts, Split, split, worst_body
-from reports.results.lines import Line
+from reports.results.lines import Line, value_text
 from reports.results.overview import Report
+from sim.engine.settings import profile_of
+from sim.registry import engine
 
 CURVES = 5
-"""Curves of a cell: total, drive, floor, discretisation and gap."""
+"""Curves of a cell: total, drive, floor, discretisation and gap; then those of the other bodies."""
 
 
 def build(report: Report, room: int = BUDGET) -> Section | None:
@@ -46,15 +53,32 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             "judged": sorted(
                 {report.look(x).number for x in report.lines if x.cells["gated"].all()}
             ),
+            "settings": {
+                report.looks[name].number: told for name, told in report.settings_told.items()
+            },
+            "rules": {name: rule.title for name, rule in RULES.items()},
         },
-        scripts=("legend.js", "charts.js", "mechanism.js", "stage.js", "parts.js", "motion.js"),
+        scripts=(
+            "legend.js",
+            "charts.js",
+            "mechanism.js",
+            "stage.js",
+            "parts.js",
+            "motion.js",
+            "copying.js",
+        ),
         plotly=True,
     )
 
 
 def _sizes(report: Report, scene: Scene) -> dict[str, int]:
     """Return the size of each traced cell of a scene in the page [characters], by key."""
-    rows = 2 * len(moving.moving_points(scene)) + len(moving.drawn_links(scene)) + CURVES
+    rows = (
+        2 * len(moving.moving_points(scene))
+        + len(moving.drawn_links(scene))
+        + CURVES
+        + len(scene.links)
+    )
     traces = {
         str(key): report.stored.trace(str(key))
         for line in report.lines_of(scene.name)
@@ -114,28 +138,38 @@ class _DrawnScene:
     def _line(self, line: Line, time_s: Array, body: CurveBody | None) -> dict[str, object]:
         trace = self.report.stored.trace
         parts = None if body is None else split(line, trace, body, self.scene.longest_m)
-        rows = line.cells.set_index("key")
-        scene = self.scene
+        drawn = {
+            key: {
+                "off": moving.displacements(self.scene, trace(key), time_s),
+                "parts": self._parts(parts.cells.get(key), trace(key)) if parts else None,
+            }
+            for key in chosen(line, self.sizes, self.held)
+        }
         return {
             "look": self.report.look(line).number,
             "floor": "" if parts is None else _floor(parts),
+            "command": _command(line),
             "cells": [
-                {
-                    "steps": rows.loc[key]["steps_per_turn"],
-                    "off": moving.displacements(scene, trace(key), time_s),
-                    "parts": self._parts(parts.cells.get(key)) if parts else None,
-                }
-                for key in chosen(line, self.sizes, self.held)
+                _known(row) | drawn.get(str(row["key"]), {"off": None, "parts": None})
+                for row in line.cells.to_dict("records")
             ],
         }
 
-    def _parts(self, parts: ErrorParts | None) -> dict[str, object] | None:
+    def _parts(
+        self, parts: ErrorParts | None, trace: Mapping[str, Array]
+    ) -> dict[str, object] | None:
         if parts is None:
             return None
         axis = json.dumps(self._axis(parts), default=float)
+        shared = np.isin(trace["time_s"], parts.time_s)
+        curves = dict(parts.curves)
+        for series, values in trace.items():
+            if series.startswith(("angle.", "displacement.")):
+                scale = 1.0 if series.startswith("angle.") else self.scene.longest_m
+                curves[CurveBody(series, scale).name] = values[shared] / scale
         return {
-            "names": list(parts.curves),
-            "curves": moving.packed(np.vstack(list(parts.curves.values()))),
+            "names": list(curves),
+            "curves": moving.packed(np.vstack(list(curves.values()))),
             "axis": self.axes.setdefault(axis, len(self.axes)),
         }
 
@@ -146,6 +180,54 @@ class _DrawnScene:
             "angle": [round(float(a), 6) for a in moving.told_places(self.scene, parts.driver_rad)],
             "part": [round(100.0 * float(p), 3) for p in part],
         }
+
+
+def _known(row: Mapping[Hashable, Any]) -> dict[str, object]:
+    """Return the facts of a cell: its end, its failed rules, and errors with their limits."""
+    limits = {
+        name: row.get(name.replace("_pure", "_limit_pure"), math.nan)
+        for name in map(str, row)
+        if name.endswith("_pure") and not name.endswith("_limit_pure")
+    }
+    return {
+        "steps": row["steps_per_turn"],
+        "verdict": row["verdict"] if row["status"] == "ok" else f"{row['status']}: {row['reason']}",
+        "failed": str(row.get("failed_rules") or "").replace(",", " ").split(),
+        "errors": [
+            [*_quantity(name), float(f"{row[name]:.3g}"), _finite(limit)]
+            for name, limit in limits.items()
+            if math.isfinite(row[name]) and name != "place_pure"  # the worst of angle and place
+        ],
+    }
+
+
+def _quantity(column: str) -> tuple[str, str]:
+    """Return name and unit of a column of pure errors."""
+    if column in DIAGRAMS:
+        return DIAGRAMS[column]
+    words = column.removesuffix("_pure").replace("_differenced", ", from logged places")
+    entry = QUANTITIES.get(words.partition(",")[0])
+    return words, SHARES.get(entry.share, entry.share) if entry else ""
+
+
+def _finite(limit: float) -> float | None:
+    return float(f"{limit:.3g}") if math.isfinite(limit) else None
+
+
+def _command(line: Line) -> str:
+    """Return the command that repeats a cell of a line, to which its steps a turn are added; a
+    variant with settings of its own names them as differences from its profile."""
+    first = line.cells.iloc[0]
+    words = ["crankcheck", "sweep", line.scene, "--engine", line.engine]
+    words += ["--profile", str(first["profile"]), "--turns", f"{first['turns']:g}", "--no-timing"]
+    try:
+        usual = dict(profile_of(engine(line.engine), str(first["profile"])).values)
+    except CrankcheckError:  # not installed here
+        usual = dict(line.settings)
+    for name, value in line.settings.items():
+        if value != usual.get(name):
+            words += ["--set", f"{line.engine}.{name}={value_text(value)}"]
+    return shlex.join([*words, "-o", "again", "--steps-per-turn"])
 
 
 def _floor(found: Split) -> str:

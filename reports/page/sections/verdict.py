@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from reports.output.numbers import count, duration, error_text, floor_words, listed
+from reports.page.sections.copied import recommended
 from reports.page.sections.section import Section
 from reports.protocol.way import FIXED, SHRINKS
 from reports.results.lines import Line, Look, named
@@ -64,6 +65,9 @@ def build(report: Report) -> Section:
         title="Verdict",
         template="verdict.html",
         words={
+            "advice": [] if report.driven is None else recommended(report.driven),
+            "first": ASKED,
+            "moves": report.driven is not None and any(report.driven.scenes.values()),
             "verdict": verdict(gated),
             "level": level(gated),
             "sentences": [

@@ -78,6 +78,36 @@ def test_a_file_that_is_read_or_written_twice_is_refused(line: str, place: Path)
 
 SHORT = "fourbar-lecture-1 --engine pymunk --profile tuned"
 VERIFY = f"verify {SHORT} --turns 0.2 --no-convergence"
+FOREIGN = {
+    f"{VERIFY} --json mine.toml": "--json mine.toml: there is a file that crankcheck did not write",
+    f"{VERIFY} --csv map.toml": "--csv map.toml: there is a file",
+    f"{VERIFY} --junit x.csv": "--junit x.csv: there is a file",
+    f"{VERIFY} --json other.json": "--json other.json: there is a file",
+    f"advise mine.toml {ADVISE} --json map.toml": "--json map.toml: there is a file",
+    "selftest --fault drive-other --json map.toml": "--json map.toml: there is a file",
+    f"{JUDGE} --junit map.toml": "--junit map.toml: there is a file",
+    "diff out out --junit map.toml": "--junit map.toml: there is a file",
+}
+
+
+@pytest.mark.parametrize("line", FOREIGN)
+def test_a_file_that_no_command_wrote_is_not_written_over(line: str, place: Path) -> None:
+    Path("other.json").write_text('{"name": "a package"}')
+    before = files(place)
+    result = crank(*line.split())
+    assert result.exit_code == 2, result.output
+    assert FOREIGN[line] in flat(result.stderr)
+    assert files(place) == before
+
+
+def test_a_document_of_a_command_and_an_empty_file_are_written_over(place: Path) -> None:
+    outputs = ("--json", "a.json", "--junit", "b.xml", "--csv", "cells")
+    Path("cells").touch()
+    for _ in range(2):
+        assert crank_alone(*VERIFY.split(), *outputs).exit_code == 0
+    assert Path("cells").read_text().startswith("scene,")
+
+
 SWEEP = f"sweep {SHORT} --steps-per-turn 90 --no-timing"
 COMMANDS = {
     f"{VERIFY} -o out": 0,

@@ -56,7 +56,7 @@ def test_all_files_of_a_folder_hold_the_same_cells_of_the_last_run(tmp_path: Pat
     line = f"verify {FAST} --engine mujoco"
     told(line, path, "-o", folder, "--tol", "angle=1e-12", code=1)
     assert "mine" in told(line, path, "-o", folder)
-    names = ["errors.parquet", "verify.csv", "verify.json", "verify.junit.xml"]
+    names = ["errors.parquet", "verify.csv", "verify.html", "verify.json", "verify.junit.xml"]
     assert sorted(path.name for path in folder.iterdir()) == names
     cells = pd.read_csv(folder / "verify.csv")
     assert cells["profile"].tolist() == ["tuned", "as-shipped"]

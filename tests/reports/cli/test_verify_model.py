@@ -37,7 +37,8 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(verify_model, "run_lines", run_here)
     Path("engine.xml").write_text(SLIDER_CRANK)
     Path("parts").mkdir()
-    Path("parts/option.xml").write_text('<mujoco><option timestep="0.002"/></mujoco>')
+    head = '<?xml version="1.0"?><!-- as crankcheck writes files, so that it may replace this -->'
+    Path("parts/option.xml").write_text(f'{head}<mujoco><option timestep="0.002"/></mujoco>')
     Path("whole.xml").write_text(INCLUDING)
     return tmp_path
 

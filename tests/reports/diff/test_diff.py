@@ -170,7 +170,6 @@ def test_a_mistake_writes_nothing(stored: Copy, diff: Run, paper: Console, tmp_p
     for fault, asked in {
         "none: no such folder": {"new": tmp_path / "none"},
         "--factor 0.5": {"factor": 0.5},
-        "--format 'html': unknown; use text or md": {"format": "html"},
         "-o and --junit: both name": {"output": path},
         "-o .*: a folder": {"output": tmp_path, "junit": None},
         "--old-version 9: .* has mujoco": {"old_version": "9"},

@@ -58,7 +58,8 @@ OUT = """() => [...document.querySelectorAll('body *')].filter(each => {
     && (box.right > 390.5 || box.left < -0.5);
 }).map(each => `${each.tagName} ${each.id} ${each.textContent.slice(0, 40)}`)"""
 CONTROLS = "button, input, select, summary, .scroll"
-NAMELESS = """controls => [...document.querySelectorAll(`${controls}, [role=img]`)].filter(
+NAMELESS = """controls => [...document.querySelectorAll(
+  `${controls}, [role=img], [role=figure]`)].filter(
   each => !(each.getAttribute('aria-label') || each.textContent.trim()
     || [...(each.labels ?? [])].some(label => label.textContent.trim()))
 ).map(each => each.outerHTML)"""

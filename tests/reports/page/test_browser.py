@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Locator, Page
+from playwright.sync_api import FloatRect, Locator, Page
 
 from models.array import Array
+from reports.store.reader import Stored
 from tests.reports.page.tab import Tab
 from tests.worlds.tiers import slow
 
@@ -35,6 +36,12 @@ def corners(path: Locator) -> Array:
     return np.reshape(np.array(numbers, dtype=float), (-1, 2))
 
 
+def box_of(place: Locator) -> FloatRect:
+    box = place.bounding_box()
+    assert box is not None
+    return box
+
+
 @pytest.fixture
 def opened(wide: Tab, small_page: Path) -> Tab:
     """The page of the small store with all its diagrams drawn, as it was when it was opened."""
@@ -52,6 +59,33 @@ def test_printing_draws_what_was_not_scrolled_to(wide: Tab, small_page: Path) ->
 def test_a_whole_visit_has_no_error_and_no_request_and_every_control_a_name(opened: Tab) -> None:
     opened.no_error_and_no_request("#motion-visible")
     opened.every_control_has_a_name()
+
+
+ANSWER = (".verdict", "#advice", "#answer-chart", "#answer-picture")
+"""The parts of the first screen, in the order of a phone."""
+
+
+def test_the_first_screen_has_verdict_settings_diagram_and_mechanism(
+    opened: Tab, page: Page
+) -> None:
+    page.evaluate("() => scrollTo(0, 0)")
+    ends = [box["y"] + box["height"] for box in map(box_of, map(page.locator, ANSWER))]
+    assert max(ends) <= 900.0
+    assert page.locator("#advice tbody tr:visible").count() == 2  # engines, for one target
+    page.locator("#advice .copy:visible").first.click()
+    page.wait_for_function("() => document.querySelector('#advice .copy').textContent !== ''")
+    drawers = page.locator("#recommendation .snippet pre").all_text_contents()
+    copied = page.evaluate("() => navigator.clipboard.readText().catch(() => '')")
+    assert copied == "" or copied in drawers
+    page.select_option("#advice-target", index=0)
+    assert page.locator("#advice tbody tr:visible").count() == 2
+
+
+def test_a_phone_has_the_first_screen_in_its_order(phone: Tab, small_page: Path) -> None:
+    found = phone.visit(small_page, *SECTIONS).page
+    tops = [box_of(found.locator(part))["y"] for part in ANSWER]
+    assert tops == sorted(tops)
+    assert tops[-1] < box_of(found.locator(".sentences"))["y"]
 
 
 def test_a_switch_of_the_legend_takes_a_trace_or_an_engine_out_and_back(page: Page) -> None:
@@ -90,6 +124,18 @@ def test_a_marker_tells_its_settings_and_another_scene_and_cost_are_shown(page: 
     assert traces(page, "precision-chart")["front"] is False
 
 
+def test_markers_are_filled_by_tolerance_or_by_a_fixed_error(page: Page) -> None:
+    page.select_option("#precision-scene", "fourbar-lecture-1")
+    points = """() => document.getElementById('precision-chart').data.slice(1)
+        .flatMap(line => line.y.map((y, i) => [y, !line.marker.symbol[i].endsWith('-open')]))"""
+    for target in ("0.001", "0.0001", "1e-06"):
+        page.select_option("#precision-filled", target)
+        found = page.evaluate(points)
+        assert [filled for _, filled in found] == [error <= float(target) for error, _ in found]
+    page.select_option("#precision-filled", "")
+    assert page.evaluate(points) != found
+
+
 def test_convergence_has_fits_and_floors_and_the_table_follows(page: Page) -> None:
     assert "mujoco tuned fit" in traces(page, "convergence-chart")
     assert "order 2.0" in page.locator("#convergence-legend").inner_text()
@@ -99,6 +145,32 @@ def test_convergence_has_fits_and_floors_and_the_table_follows(page: Page) -> No
     page.select_option("#convergence-quantity", "gap_pure")
     title = "() => document.getElementById('convergence-chart').layout.yaxis.title.text"
     assert "of longest link" in page.evaluate(title)
+
+
+def test_a_cell_of_a_table_leads_to_what_is_known_of_it(
+    opened: Tab, page: Page, small: Stored
+) -> None:
+    found = page.evaluate("() => document.querySelectorAll('main a.known').length")
+    assert found > len(small.cells)  # beside every cell the rows of other tables
+    page.locator("#provenance details", has_text="cells as a table").locator("> summary").click()
+    rows = page.locator("#cells tr", has_text="fourbar-lecture-1")
+    rows.locator("a", has_text="no bias").nth(1).click()
+    assert page.input_value("#motion-scene") == "fourbar-lecture-1"
+    assert page.input_value("#motion-steps") == "180"
+    cells = small.cells
+    own = cells[(cells["scene"] == "fourbar-lecture-1") & (cells["variant"] == "no bias")]
+    (row,) = own[own["steps_per_turn"] == 180].to_dict("records")
+    told = opened.text("#motion-known")
+    assert all(rule in told for rule in str(row["failed_rules"]).split())
+    for column in ("gap_pure", "gap_limit_pure", "velocity_pure"):
+        assert f"{row[column]:.2e}".replace("e-0", "e-") in told
+    command = opened.text("#motion-command")
+    assert "--engine pymunk --profile as-shipped" in command
+    assert "--set pymunk.error_bias=0" in command
+    assert command.endswith("--steps-per-turn 180")
+    bodies = page.locator("#motion-body option").all_text_contents()
+    page.select_option("#motion-body", index=1)
+    assert list(traces(page, "motion-chart")) == [bodies[1]]
 
 
 def test_tables_sort_by_their_numbers_up_and_down_and_are_filtered(page: Page) -> None:
@@ -130,6 +202,10 @@ def test_the_drawing_moves_by_itself_if_that_is_welcome_and_stops(opened: Tab, p
     page.wait_for_function("() => document.getElementById('motion-play').textContent === 'Pause'")
     moved = "([links, before]) => document.querySelector(links).getAttribute('d') !== before"
     page.wait_for_function(moved, arg=[LINKS, opened.drawn(LINKS)[0]])
+    assert int(page.input_value("#motion-factor")) > 1  # so that the engines are seen apart
+    page.select_option("#motion-scene", "shaper")
+    opened.elapse(20_000)  # round after round, in another scene as well
+    assert opened.text("#motion-play") == "Pause"
     page.locator("#motion-play").click()
     stopped = opened.drawn(LINKS)
     opened.elapse(150)
@@ -160,6 +236,8 @@ def test_the_keyboard_skips_to_the_verdict_and_turns_the_crank(opened: Tab, page
 def test_an_error_is_magnified_by_the_factor_and_has_its_parts(opened: Tab, page: Page) -> None:
     parts = ["total", "drive", "model floor", "discretisation", "closure: widest gap / L"]
     assert list(traces(page, "motion-chart")) == parts
+    off = [name for name, shown in traces(page, "motion-chart").items() if not shown]
+    assert off == ["drive"]  # at rounding
     page.select_option("#motion-steps", "90")
     page.locator("#motion-slider").focus()
     page.keyboard.press("End")

@@ -155,6 +155,19 @@ def test_keys_lead_from_step_to_step_and_through_the_positions(wide: Tab, writte
     assert [words.split(", ")[1] for words in told] == [f"position {k} of 3" for k in (1, 2, 3)]
 
 
+def test_a_construction_begins_with_its_finished_drawing_and_moves_on(
+    wide: Tab, rocker: Path
+) -> None:
+    page = wide.open(rocker).page
+    assert wide.text(PLACE) == "Step 5 of 5"
+    assert page.locator(f"{PICTURE} .lines > g[hidden]").count() == 0
+    wide.open(rocker, reduced_motion="no-preference")
+    page.wait_for_function(f"() => document.querySelector('{PLAY}').textContent === 'Pause'")
+    wide.elapse(60_000)  # round after round, and never back to the empty frame
+    assert wide.text(PLACE).startswith("crank at")
+    assert wide.text(PLAY) == "Pause"
+
+
 def test_buttons_lead_to_a_step_or_a_whole_one_without_motion(wide: Tab, rocker: Path) -> None:
     page = wide.open(rocker).page
     page.locator("#construction-steps button").nth(1).click()

@@ -7,6 +7,7 @@ import numpy as np
 
 from reports.page.build import HERE
 from reports.page.sections.hard import SHADES
+from reports.results.lines import COLOURS
 from reports.stability.matrix import OUTCOMES
 
 CSS, MAP = ((HERE / "assets" / f"{n}.css").read_text(encoding="utf-8") for n in ("page", "map"))
@@ -31,6 +32,11 @@ def contrast(a: str, b: str) -> float:
 def test_both_ways_to_the_dark_theme_are_one() -> None:
     assert SYSTEM_DARK == DARK
     assert set(LIGHT) == set(DARK)
+
+
+def test_figures_have_the_colours_of_the_light_page() -> None:
+    assert [LIGHT[f"c{number}"] for number in range(len(COLOURS))] == list(COLOURS)
+    assert f"c{len(COLOURS)}" not in LIGHT
 
 
 def test_text_can_be_read_and_lines_be_seen() -> None:

@@ -14,7 +14,7 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.describe.facts import describe_law
-from reports.figures.drawing import COLOURS, DASHES
+from reports.figures.drawing import DASHES
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, PAGE_IN, mark_zero, saved, shorten, styled
 from reports.lectures.drawing.workbook.family import (
@@ -40,6 +40,7 @@ from reports.page.sections.section import Section
 from reports.protocol.way import way_of
 from reports.requests import solving
 from reports.requests.options import SolveOptions, given
+from reports.results.lines import COLOURS
 
 LARGEST = 1e9
 """Largest number of a mechanism [SI]."""
@@ -158,8 +159,7 @@ def draw_family(
 def _look(k: int) -> dict[str, Any]:
     """The look of a member's curve: a hue of its own, and dashes where hues run out."""
     dashes = DASHES[k % len(DASHES)]
-    shades = COLOURS[k % len(COLOURS)]
-    colour = shades[1 + k // len(COLOURS) % (len(shades) - 1)]
+    colour = COLOURS[5 * k % len(COLOURS)]  # of another family than the one before
     return {"color": colour, "linestyle": (0, dashes) if dashes else "-", "linewidth": 1.0}
 
 
