@@ -236,8 +236,8 @@ def refuse_of_other_kinds(
     names = [name for limits in known for name in limits]
     other = [name for name in quantities if name not in names]
     if other:
-        of = "for free motion; add --free, or" if other[0] in FREE else "of a drive;"
-        of = "of elastic links;" if other[0] in BENDING else of
+        of = "for free motion; add --free, or" if other[0] in FREE else "for a drive;"
+        of = "for elastic links;" if other[0] in BENDING else of
         raise CrankcheckError(
             f"{option} {other[0]}: it is {of} leave {other[0]} out. "
             f"There is {', '.join(dict.fromkeys(names))}"

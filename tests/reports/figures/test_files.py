@@ -67,7 +67,7 @@ FAULTS = {
     "--scene slotted-levr: no such scene here; did you mean slotted": (["slotted-levr"], []),
     "--only profil: no such figure here; did you mean profile": ([], ["profil"]),
     "leave out --scene": ([SCENES[0]], ["profile"]),
-    "of what was let go": ([], ["free-motion"]),
+    "for free scenes": ([], ["free-motion"]),
 }
 
 

@@ -191,7 +191,7 @@ def test_a_mistake_is_told_before_anything_is_installed(
         (
             "8.8.8",
             {"scenes": ["fourbar-swing"], "turns": 1.0},
-            "what is in free motion has no turns",
+            "free motion has no turns",
         ),
         ("8.8.8", {"cache": tmp_path / "file"}, "--cache"),
         ("8.8.8", {"folder": tmp_path / "file"}, "-o"),

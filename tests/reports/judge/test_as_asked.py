@@ -66,7 +66,7 @@ def test_every_word_of_a_run_is_held_to_the_request(field: str) -> None:
     texts = not_asked_for(replace(done, **{field: FIELDS[field]}), asked, held, FOURBAR, state)
     assert texts
     word = "setting" if field in ("asked", "settings") else field
-    end = {"setting": "the run has none", "profile": "asked for 'tuned', the run has 'another'"}
+    end = {"setting": "the run has none", "profile": "requested 'tuned', the run has 'another'"}
     assert all(text.startswith(word) for text in texts), texts
     assert all(text.endswith(end.get(word, "")) for text in texts), texts
 
@@ -121,7 +121,7 @@ def test_the_words_of_a_finer_run_are_held_to_the_request_too() -> None:
         return replace(done, version="3.0") if options["every"] > 1 else done
 
     found = said(cell(FOURBAR, "mujoco"), other)
-    assert all(f"finer run, dt / {parts}: version: asked for '" in found for parts in (2, 4))
+    assert all(f"finer run, dt / {parts}: version: requested '" in found for parts in (2, 4))
 
 
 def test_the_bodies_that_a_four_bar_moves_unevenly_are_all_but_its_crank() -> None:

@@ -127,7 +127,7 @@ def test_a_log_that_begins_in_another_way_is_told_and_a_right_one_has_its_page()
     motion = truth()
     one = judged({"rocker_rad": motion.links["rocker"].theta + 0.1})
     assert any(
-        ("does not begin as fourbar-swing is in free motion: rocker_rad by") in n for n in one.notes
+        ("does not begin with the start of fourbar-swing: rocker_rad by") in n for n in one.notes
     )
     later = judged({"rocker_rad": motion.links["rocker"].theta[50:] + 1e-9}, time_s=TIME_S[50:])
     assert later.verdict == "within"
@@ -181,7 +181,7 @@ def test_readings_half_a_step_before_the_start_are_read() -> None:
 
 
 def test_limits_of_the_other_kind_of_motion_are_refused_of_runs_too() -> None:
-    with pytest.raises(CrankcheckError, match="drive: it is of"):
+    with pytest.raises(CrankcheckError, match="drive: it is for"):
         crankcheck.judge(SWING, ran(SWING, "mujoco", 0.3), target={"drive": 1e-3})
 
 

@@ -124,6 +124,18 @@ def test_a_marker_tells_its_settings_and_another_scene_and_cost_are_shown(page: 
     assert traces(page, "precision-chart")["front"] is False
 
 
+def test_markers_are_filled_by_tolerance_or_by_a_fixed_error(page: Page) -> None:
+    page.select_option("#precision-scene", "fourbar-lecture-1")
+    points = """() => document.getElementById('precision-chart').data.slice(1)
+        .flatMap(line => line.y.map((y, i) => [y, !line.marker.symbol[i].endsWith('-open')]))"""
+    for target in ("0.001", "0.0001", "1e-06"):
+        page.select_option("#precision-filled", target)
+        found = page.evaluate(points)
+        assert [filled for _, filled in found] == [error <= float(target) for error, _ in found]
+    page.select_option("#precision-filled", "")
+    assert page.evaluate(points) != found
+
+
 def test_convergence_has_fits_and_floors_and_the_table_follows(page: Page) -> None:
     assert "mujoco tuned fit" in traces(page, "convergence-chart")
     assert "order 2.0" in page.locator("#convergence-legend").inner_text()

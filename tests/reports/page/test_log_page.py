@@ -67,7 +67,7 @@ def test_the_verdict_is_told_with_the_errors_in_the_units_of_the_columns(text: s
     stands_alone(text, SECTIONS)
     told = words(text)
     assert "✗ OUT OF TOLERANCE: 1 of 6 errors over 361 samples of fourbar-lecture-1" in told
-    assert "✗ OUT rocker_deg angle of rocker 0.5 deg 0.00873 rad 0.001 --target 873%" in told
+    assert "✗ OUT rocker_deg angle of rocker 0.5 deg 0.00873 rad 0.001 --target 8.7" in told
     assert "angle of rocker (column rocker_deg) is off by +0.5 deg" in told
     assert "No known cause" not in told
     assert "[[channel]] column = &#34;rocker_deg&#34; offset = -0.5" in told

@@ -138,7 +138,7 @@ CASES = {
     "cut timings": Case(cut("timings"), "cut short; its times are lost"),
     "timings file": Case(in_place("timings", text), "in place of a folder; all times"),
     "whole part": Case(gone("cells", "timings"), "fewer cells than its sweeps requested", 2),
-    "other store": Case(of_another_store, "no sweep in manifest.json asked for", cure="nothing"),
+    "other store": Case(of_another_store, "no sweep in manifest.json requested", cure="nothing"),
     "other folder": Case(
         lambda f: shutil.copy(first(f, "timings"), f / "cells"),
         "parquet: not of the store",
@@ -146,7 +146,7 @@ CASES = {
     ),
     "cut manifest": Case(spoiled(MANIFEST, lambda raw: raw[:500]), "manifest.json: not JSON", 0),
     "no manifest": Case(lambda f: (f / MANIFEST).unlink(), "json: not there", 0),
-    "other manifest": Case(manifest(renamed), "manifest.json: not as it was written", 0),
+    "other manifest": Case(manifest(renamed), "manifest.json: changed since it was written", 0),
     "plain manifest": Case(manifest(lambda said: said.pop("seal")), "checksum differs", 0),
     "newer": Case(
         manifest(lambda said: said.update(format=9)), "format 9, written by crankcheck", 0, "anew"

@@ -83,7 +83,7 @@ def test_a_file_of_other_versions_or_starts_is_refused(
     kept: Path, monkeypatch: pytest.MonkeyPatch, name: str, now: object, words: str
 ) -> None:
     monkeypatch.setattr(f"reports.requests.tune.{name}", now)
-    with pytest.raises(CrankcheckError, match=f"asked was {words}"):
+    with pytest.raises(CrankcheckError, match=f"requested was {words}"):
         told(replace(SMALL, output=kept))
 
 
@@ -92,7 +92,7 @@ def test_what_the_clock_ended_is_told_and_another_limit_refused(path: Path) -> N
     code, text = told(request)
     assert code == 1
     assert "The time limit ended 2 of the trials (--limit-s 0.0001)" in " ".join(text.split())
-    with pytest.raises(CrankcheckError, match=r"with limit_s 0\.0001; asked was limit_s 20"):
+    with pytest.raises(CrankcheckError, match=r"with limit_s 0\.0001; requested was limit_s 20"):
         told(replace(request, limit_s=20.0))
 
 
@@ -127,9 +127,9 @@ def test_several_scenes_are_tuned_together_and_measured_cost_is_told() -> None:
         ({"turns": 1e9}, r"--turns 1e\+09: .* take 12500 turns or less"),
         ({"scenes": ()}, "name a scene"),
         ({"output": Path("nowhere/kept.db")}, "there is no folder"),
-        ({"target": 1e-4}, "holds a search with target 1e-05; asked was target 0.0001"),
-        ({"engine": "pymunk"}, "with engine mujoco; asked was engine pymunk"),
-        ({"scenes": ("whitworth",)}, r'with scene \["fourbar-lecture-1"\]; asked was'),
+        ({"target": 1e-4}, "holds a search with target 1e-05; requested was target 0.0001"),
+        ({"engine": "pymunk"}, "with engine mujoco; requested was engine pymunk"),
+        ({"scenes": ("whitworth",)}, r'with scene \["fourbar-lecture-1"\]; requested was'),
     ],
 )
 def test_bad_requests_and_the_file_of_another_search_are_refused_before_anything_runs(

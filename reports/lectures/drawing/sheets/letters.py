@@ -18,7 +18,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.textpath import TextPath
 
 from models.array import Array
-from reports.figures.style import FONT, INK, POINTS, QUIET, styled
+from reports.figures.layout import FONT
+from reports.figures.style import INK, POINTS, QUIET, styled
 from reports.lectures.drawing.sheets.paper import MM_PER_IN, Box, Canvas, line, text
 
 PIXEL_MM = 0.2

@@ -131,7 +131,7 @@ def test_paper_that_is_none_or_without_room_is_refused() -> None:
     for paper, told in (
         ("A7", "unknown size; use A5, A4"),
         ("100x50", "needs 180 x 120 mm"),
-        ("nanx1", "no size"),
+        ("nanx1", "unknown size"),
         ("99999x99999", "at most 2000 mm"),
     ):
         with pytest.raises(CrankcheckError, match=told):
