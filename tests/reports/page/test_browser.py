@@ -294,16 +294,5 @@ def test_hostile_text_does_nothing(wide: Tab, evil_page: Path) -> None:
     wide.hostile_text_does_nothing("#provenance")
 
 
-def test_a_label_is_not_cut_on_a_phone(phone: Tab, small_page: Path) -> None:
-    page = phone.visit(small_page, *SECTIONS).page
-    for curve in (1, 3, 4):
-        page.evaluate(HOVER, curve)
-        label = page.locator("#precision-chart .hovertext")
-        label.wait_for()
-        box = box_of(label)
-        assert box["x"] >= 0.0
-        assert box["x"] + box["width"] <= 390.0
-
-
 def test_nothing_runs_out_of_a_phone(phone: Tab, small_page: Path) -> None:
     phone.visit(small_page, *SECTIONS).nothing_runs_out()
