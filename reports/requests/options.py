@@ -94,7 +94,7 @@ def option_of(request: type, field: str) -> str:
         return str(note.metavar)
     # typer takes the first name of an option for a default, until it sees the annotation.
     names = [] if isinstance(note, str) else [str(note.default), *(note.param_decls or ())]
-    return next((each for each in names if each.startswith("--")), name_of(field))
+    return next((each for each in names if each == "-o" or each[:2] == "--"), name_of(field))
 
 
 def given(request: Any, *fields: str) -> Iterator[str]:

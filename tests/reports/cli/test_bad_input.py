@@ -142,7 +142,7 @@ def cases() -> Iterator[tuple[str, str, Made, str, str]]:
     head = "name = 'a'\nsource = 'b'\n[ground.points]\nA = [0.0, 0.0]\n"
     driver = "[driver]\nlink = 'l0'\nspeed_rad_s = 1.0\n"
     yield "links on a pin", "it.toml", f"{head}{driver}{star}".encode(), SOLVE, "mobility W = .*999"
-    words = "asks for 1e.08 cells: 1 scene x 1e.08 variants .*100 of s0, 100 of s1.*; a sweep has"
+    words = "has 1e.08 cells: 1 scene x 1e.08 variants .*100 of s0, 100 of s1.*; a sweep has"
     yield "variants", "it.toml", settings(4, 100), SWEEP, words
     words = "at most 100000: take fewer"
     yield "variants of 60", "it.toml", settings(60, 2), SWEEP, words

@@ -23,6 +23,7 @@ LINES = {
     "tune fourbar-lecture-1 --engine pymunk --target 1e-2 --budget 2 --no-timing": 0,
     "advise fourbar-lecture-1 --engine pymunk --dt 0.01 --speed 10 --target 0.1 --jobs 1": 0,
     "selftest --engine pymunk --fault drive-other --jobs 1": 0,
+    "explain CC110": 0,
     "run fourbar-lecture-1 --engine mujoco --turns 1 -o log.parquet": 0,
     "judge fourbar-lecture-1 log.parquet --target 1e-3 -o log.html": 0,
     "export fourbar-lecture-1 -o loop.xml": 0,
