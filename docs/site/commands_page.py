@@ -40,7 +40,7 @@ def _section(command: Any, called: str) -> str:
 
 
 def _row(parameter: Any, context: typer.Context) -> str:
-    """One line of the table: what is written, the default, meaning for."""
+    """One line of the table: how it is written, its default, its purpose."""
     written, told = parameter.get_help_record(context)
     what, _, extra = told.rpartition("  [") if told.endswith("]") else (told, "", "")
     facts = extra.rstrip("]").split("; ") if extra else []

@@ -89,10 +89,11 @@ class Judged(Evidence):
 
     @property
     def mended(self) -> list[str]:
-        """The rules of the known failure that do not fail any more."""
+        """The rules of the known failure that were judged and do not fail any more."""
         if self.known is None or self.status != "ok":
             return []
-        return [rule for rule in self.known.rules if rule not in self.sizes]
+        right = {finding.rule for finding in self.findings} - self.sizes.keys()
+        return [rule for rule in self.known.rules if rule in right]
 
     @property
     def known_text(self) -> str:
@@ -134,6 +135,9 @@ def read_known(path: Path) -> list[KnownFailure]:
     if other := [rule for one in known for rule in one.rules if rule not in RULES]:
         hint = suggestion(other[0], RULES, "use one of")
         raise CrankcheckError(f"{place}: {shown(other[0])} is no rule; {hint}")
+    names = [" ".join(filter(None, one.names)) for one in known]
+    if twice := [name for at, name in enumerate(names) if name in names[:at]]:
+        raise CrankcheckError(f"{place}: {twice[0]} is there twice; name its rules in one entry")
     return known
 
 

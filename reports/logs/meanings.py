@@ -161,7 +161,7 @@ def judged_channels(
         if key in first:
             raise CrankcheckError(
                 f"two columns for one quantity, {each.name}: {first[key].column!r} and "
-                f"{each.column!r}; rename one, or say in a map meaning, or ignore = true"
+                f"{each.column!r}; rename one, or give its meaning in a map, or ignore = true"
             )
         first[key] = each
         if each.kind.body_kind == "point" and each.of in scene.ground:
@@ -225,7 +225,7 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
     angle *= scene.driver.is_crank and not scene.is_free
     lacks = [
         *([] if times else [f"the column of the times, in [time]{angle}"]),
-        *([] if bodies else ["of at least one column meaning of, in a [[channel]]"]),
+        *([] if bodies else ["the body of at least one column, in a [[channel]]"]),
     ]
     named = SceneNames(scene)
     points = (name for name in scene.pins if name not in scene.ground)

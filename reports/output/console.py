@@ -89,7 +89,7 @@ def say_whole(console: Console, *texts: str) -> None:
 
 
 def put(console: Console, path: Path | None, text: str, what: str) -> None:
-    """Write a text into a file and say meaning, or to the terminal for None. Raises
+    """Write a text into a file and name it, or to the terminal for None. Raises
     CrankcheckError where the system refuses."""
     if path is None:
         console.file.write(text)

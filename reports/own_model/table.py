@@ -167,8 +167,8 @@ def still_out(judged: JudgedModel) -> str:
 
 
 def share_text(share: float) -> str:
-    """Return an error over its limit: 0.12 of its limit, 34 of its limit."""
-    return f"{readable(share, 2)} of its limit"
+    """Return an error over its limit: 0.12 of its limit, 34 times its limit."""
+    return f"{readable(share, 2)} {'of' if share < 1.0 else 'times'} its limit"
 
 
 def verdict_text(judged: JudgedModel) -> str:

@@ -21,13 +21,13 @@ from reports.quantities.quantity import Role, Tolerance
 from sim.engine import Drive
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
+"""Target errors of place [rad, or of the longest link]."""
 FIXED = TARGETS[1:]
 """Errors that cells of every step are compared with beside their tolerance."""
 SHRINKS = (
     "The tolerance of a cell is a budget that shrinks with its step: settings with less error may "
     "be within it less often."
 )
-"""Target errors of place [rad, or of the longest link]."""
 
 
 @dataclass(frozen=True)

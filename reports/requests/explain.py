@@ -38,6 +38,8 @@ HELPS = {
     "differencing": "take the engine's own rates, or a longer step",
 }
 """What lowers each part of an error (docs/theory/errors.md)."""
+ADDED = ("drive", "model floor", "discretisation")
+"""Parts whose sum is the error of a place; the others have scales of their own."""
 
 
 @dataclass(frozen=True)
@@ -99,9 +101,9 @@ class ExplainRequest:
         size = f"{worst.quantity} of {worst.body} {error_text(worst.pure)} {share(worst)}"
         answer: dict[str, object] = {"cell": head, "error": size}
         parts = answer["parts"] = _parts(errors, checked.convergence, beside, worst)
-        added = ("drive", "model floor", "discretisation")
-        largest = max(added, key=lambda part: parts.get(part, 0.0))
-        turns = [f"{largest} is the largest part of the error: {HELPS[largest]}"]
+        added = {part: parts[part] for part in ADDED if parts.get(part, 0.0) > 0.0}
+        largest = max(added, key=added.__getitem__, default="")
+        turns = [f"{n} is the largest part of the error: {HELPS[n]}" for n in added if n == largest]
         if seen := checked.convergence:
             unseen = floor_words(math.nan, seen.error[-1]) if seen.trend == "shrinks" else ""
             answer["when the step is halved"] = "; ".join(filter(None, [seen.words, unseen]))

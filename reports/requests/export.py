@@ -29,7 +29,7 @@ from reports.output.write import check_file, write
 from reports.plan.requirements import under_control
 from reports.plan.steps import MOST_STEPS
 from reports.protocol.way import way_of
-from reports.requests.options import SceneName, option, output_option
+from reports.requests.options import SceneName, given, option, output_option
 from reports.requests.run import RunRequest
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
@@ -128,6 +128,8 @@ class ViewRequest:
         scene = outlined(load_scene(self.scene))
         if self.forces and self.engine:
             raise CrankcheckError("--forces with --engine: a picture has one of them; leave one")
+        for of_run in given(self, "profile", "magnify") if self.engine is None else ():
+            raise CrankcheckError(f"{of_run}: no run is drawn; give --engine as well")
         run = None if self.engine is None else self._run()
         if output is None and has_screen() and not (self.forces or run):
             viewer()(*way_of(scene).opened(scene))

@@ -147,7 +147,7 @@ def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> StoredRun:
         steps, turns = same(cell.steps_per_turn), same(cell.turns)
         name = CellName(cell.scene.name, cell.engine, cell.profile, cell.drive, steps, turns)
         planned[name] = StoredCell(name, "", "", "", {}, scene_digest=digests.get(name.scene, ""))
-    return StoredRun("the requested engine", planned)
+    return StoredRun("the request", planned)
 
 
 def stored_cell(row: CellRow, facts: Mapping[str, str]) -> StoredCell:

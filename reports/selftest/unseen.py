@@ -109,8 +109,8 @@ UNSEEN = (
            "checked (too-good-gaps).",
            in_log(_one_shut), shows=False),
     Unseen("all-renamed", "another engine's run, all its words false",
-           "Numbers within every limit, from a run that says in every word and setting the "
-           "requested engine, are as good as those of that run; one false word is seen "
+           "Numbers within every limit, from a run that claims the requested words and "
+           "settings throughout, are as good as those of that run; one false word is seen "
            "(engine-renamed).",
            _all_renamed, needs=_as_silent),
     Unseen("turns-counted", "an angle counted from another whole turn",

@@ -126,7 +126,8 @@ def is_worse(found: Iterable[LineChange]) -> bool:
 
 def show_changes(console: Console, found: Sequence[LineChange]) -> None:
     """Print the verdict, then each change with its case, engine and profile."""
-    counts = {word: sum(each.word == word for each in found) for word in ("worse", "better")}
+    words = [each.word for each in found]
+    counts = {"worse": 0, "better": 0} | {word: words.count(word) for word in words}
     verdict, style = ("WORSE", "bold red") if is_worse(found) else ("NOT WORSE", "bold green")
     say(console, f"{verdict}: {', '.join(f'{n} {word}' for word, n in counts.items())}", style)
     for each in found:

@@ -194,13 +194,16 @@ def read_matrix(folder: Path) -> Matrix:
     CrankcheckError
         No such file, one that is damaged or too large, or one of another format.
     """
-    path = folder if folder.suffix == ".json" else folder / FILE
+    path = folder if folder.suffix == ".json" or folder.is_file() else folder / FILE
+    folder = path.parent
     if not os.path.lexists(path):
         raise CrankcheckError(
             f"{folder}: no {FILE} in it; `crankcheck stability -o {folder}` makes one"
         )
     try:
         content = json.loads(regular_bytes(path, MOST_BYTES))
+        if "critical" not in content:
+            raise CrankcheckError(f"{path}: no file of hard cases; name {FILE}, or its folder")
         if content["format"] != FORMAT:
             raise CrankcheckError(
                 f"{path}: format {content['format']}; this crankcheck reads format {FORMAT}: run "

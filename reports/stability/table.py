@@ -116,8 +116,7 @@ def _legend(matrix: Matrix) -> str:
     forces *= with_forces(matrix)
     return (
         f"Numbers: the worst error of {'; of '.join(errors)}; easy to hard from left to right; "
-        "held is "
-        f"what stays within {classes}. {letters}.\n{forces}"
+        f"held: within {classes}{f'. {letters}' * bool(letters)}.\n{forces}"
         "Each alone: crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE"
     )
 

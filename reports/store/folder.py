@@ -82,7 +82,7 @@ def open_part(path: Path) -> TablePart:
     if not path.stem.endswith(_seal(raw)):
         whole = raw.endswith(MAGIC)
         raise UnreadableError(
-            ("changed since it was written: its checksum differs") * whole or "cut short"
+            "changed since it was written: its checksum differs" * whole or "cut short"
         )
     return TablePart(path, pq.ParquetFile(pa.BufferReader(raw)))
 

@@ -139,12 +139,12 @@ def _boundless(sound: Engine) -> Engine:
 
 
 def _told_settings(asked: Asked, facts: Facts) -> Facts:
-    """They are said to be the requested engine."""
+    """They are said to be as requested."""
     return replace(facts, settings={**facts.settings, **asked.settings})
 
 
 def _deaf(sound: Engine) -> Engine:
-    """It runs as it always does, and says that it has the requested engine."""
+    """It runs as it always does, and says that it has the requested settings."""
 
     def deaf(asked: Asked) -> Asked:
         sound.check(asked.settings)

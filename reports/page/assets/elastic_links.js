@@ -20,7 +20,7 @@
     hovertemplate: `${escaped(name)}: %{y:.4~g} mm<extra></extra>`,
   });
 
-  /** The beam, once for each elastic link: what the engine has, less meaning off by. */
+  /** The beam, once for each elastic link: the deflection in the engine, less its error. */
   function beams(courses) {
     const first = new Map(courses.toReversed().map((each) => [each.link, each]));
     return [...first.values()].map((each) => {

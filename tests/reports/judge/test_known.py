@@ -34,8 +34,9 @@ def bare(
     status: str = "ok",
     name: str = "fourbar-lecture-1",
     engine: str = "mujoco",
+    judged: str = "CC103 CC110",
 ) -> Checked:
-    """A cell with findings alone."""
+    """A cell with findings alone: of rules that fail, and of the other ``judged`` ones."""
     return Checked(
         status=status,
         reason="",
@@ -43,7 +44,10 @@ def bare(
         errors=None,
         limits={},
         cell=Cell(load_scene(name), engine, "tuned", 1e-3, 1, drive="free"),
-        findings=tuple(Finding(rule, "fail", "", number) for rule, number in failing),
+        findings=tuple(
+            Finding(rule, "fail" if rule in dict(failing) else "pass", "", dict(failing).get(rule))
+            for rule in dict.fromkeys([rule for rule, _ in failing] + judged.split())
+        ),
         known=KNOWN,
     )
 
@@ -57,6 +61,7 @@ def bare(
         (bare(("CC103", 1.0), ("CC104", 1.0)), "out", "CC104 is not known to fail"),
         (bare(("CC103", 1.0)), "known", "CC110 known to fail, is right by now"),
         (bare(), "within", "CC103 CC110 known to fail, is right by now"),
+        (bare(judged="CC103"), "within", "CC103 known to fail, is right by now"),
         (bare(("CC101", None), ("CC103", 1.0), status="locked"), "out", "CC101 is not known"),
     ],
 )
@@ -120,6 +125,8 @@ FAULTY = {
     "[[known]]\nscene = 'a'\nengine = 'b'\nreason = 'c'\nrules = {}": "known.0.rules",
     "[[knwon]]\nscene = 'a'": "knwon: .*[Ee]xtra",
     "known": "not valid TOML",
+    2 * "[[known]]\nscene = 'a'\nengine = 'b'\nreason = 'c'\nrules = {CC110 = 1}\n":
+        "a b prescribed is there twice",
 }  # fmt: skip
 
 

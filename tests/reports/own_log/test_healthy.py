@@ -225,7 +225,7 @@ def test_it_moves_as_the_reference_does(name: str) -> None:
 
 TIME_S = np.linspace(0.0, 0.6, 301)
 ROCKER_DEG = np.degrees(solve(load_scene(PLAIN), TIME_S).links["rocker"].theta)
-TIMES, THING = "the column of the times", "of at least one column meaning of"
+TIMES, THING = "the column of the times", "the body of at least one column"
 FILLED = {"# of": 'of = "rocker"', "# kind": 'kind = "angle"', "# unit": 'unit = "deg"'}
 
 

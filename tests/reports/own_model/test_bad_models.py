@@ -221,7 +221,7 @@ def test_it_runs_from_many_turns_away_and_backwards_from_whole_turns(tmp_path: P
 
 
 def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
-    """In a process of its own (0.4 s each): meaning limited to is said."""
+    """In a process of its own (0.4 s each): its limit is named."""
     beside = '<body pos="0 0 9"><freejoint/><geom size="0.1" type="sphere"/></body>'
     path = tmp_path / "model.xml"
     path.write_text(planted("</worldbody>", beside * 1000 + "</worldbody>"), encoding="utf-8")

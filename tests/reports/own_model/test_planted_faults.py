@@ -394,7 +394,7 @@ def test_factors_and_shares_of_a_limit_in_words() -> None:
     told = [table.factor_words(factor) for factor in (1.0, 1.2e5, 0.25, math.inf)]
     assert told == ["the same error", "1.2e5 x less error", "4 x more error", "no error at all"]
     told = [table.share_text(share) for share in (0.0, 137.2)]
-    assert told == ["0 of its limit", "137 of its limit"]
+    assert told == ["0 of its limit", "137 times its limit"]
 
 
 def test_a_long_course_keeps_its_largest_error(

@@ -162,7 +162,7 @@ def test_a_cut_baseline_passes_what_it_has(store: Path, capsys: pytest.CaptureFi
     assert CUT in capsys.readouterr().err
     code, message = run("pymunk", "mujoco")
     assert code == 2
-    assert "1 cell of the requested engine, such as fourbar-lecture-1, mujoco tuned" in message
+    assert "1 cell of the request, such as fourbar-lecture-1, mujoco tuned" in message
 
 
 def test_a_lost_manifest_is_remade_for_its_scenes(store: Path, swept: Sweep, whole: Path) -> None:
