@@ -32,7 +32,10 @@ WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT
 ALLOWED = re.compile(r"/dev/(null|tty)$|.*[/.]matplotlib\b|.*/__pycache__/[^/]+\.pyc(\.\d+)?$")
 """What may be written elsewhere: the fonts that Matplotlib has found, and what Python keeps of a
 module that is imported for the first time."""
-TABLES = {"out/errors.parquet", "out/verify.csv", "out/verify.json", "out/verify.junit.xml"}
+TABLES = {
+    "out/errors.parquet",
+    *(f"out/verify.{kind}" for kind in ("csv", "html", "json", "junit.xml")),
+}
 VERIFY = "verify FILE --turns 0.2 -o OUT"
 COMMANDS = (
     *[VERIFY] * 8, "verify FILE --turns 0.2 -o OUT --drive servo",

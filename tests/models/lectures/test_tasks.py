@@ -39,7 +39,7 @@ FAULTS: dict[str, list[tuple[str, str]]] = {
         (f"{TWO}\nfixed_m = [[0.0, 0.0], [1.0, 0.0]]", "for three"),
         (f"{THREE}\n{MOVING}\ndistances_m = [0.1, 0.2]", "leave it out"),
         (f"{THREE}\n{MOVING}\ndriving_dyad = true", "between two"),
-        (BODY.format("C", A), "in the same way"),
+        (BODY.format("C", A), "in the same form"),
         (BODY.format("C", "{ points = { C = [0.0, 0.0], D = [0.0, 1.1] } }"),
          "1 m apart in position 1 and 1.1 m in position 2; a body is rigid"),
         (BODY.format("O2", "{ points = { O2 = [0.0, 0.0], D = [0.0, 1.0] } }"),

@@ -113,4 +113,4 @@ def test_what_ends_or_hangs_when_it_is_imported_is_said(
     with fresh(tmp_path, monkeypatch), pytest.raises(EngineError) as told_of:
         named("dire:ENGINE", Limits(limit_s, 4.0))
     assert reason in str(told_of.value)
-    assert "mend that first" in str(told_of.value)
+    assert "correct that first" in str(told_of.value)

@@ -206,7 +206,7 @@ def test_loads_of_one_stroke_that_hold_the_truth_are_named() -> None:
     law = replace(scene.driver.law, start_rad=-0.5 * math.pi, speed_rad_s=2.0)
     held = replace(scene, loads=loads, driver=replace(scene.driver, law=law))
     errors = check(cell("mujoco", seconds=0.4, scene=held)).errors
-    (note,) = [note for note in errors.notes if "held at rest" in note]
+    (note,) = [note for note in errors.notes if "hold it at rest" in note]
     assert "loads of one stroke (cut)" in note
     assert not errors_of("mujoco").notes
 

@@ -172,7 +172,7 @@ def test_milli_and_mega_are_told_by_the_size_of_the_letter(column: str, one: flo
 def test_forces_at_a_logged_angle_and_of_a_part_of_a_row_are_refused(
     frame: pd.DataFrame,
 ) -> None:
-    with pytest.raises(CrankcheckError, match="the geometry alone is judged"):
+    with pytest.raises(CrankcheckError, match="judges the geometry alone"):
         _judged(frame, drive="logged")
     some = frame.copy()
     some.loc[0, "torque_n_m"] = np.nan
@@ -207,7 +207,9 @@ def test_one_component_of_a_force_alone_is_judged(
 
 @pytest.mark.parametrize("asked", [{"require": "crank.torque"}, {"target": {"torque": 1e-3}}])
 def test_what_is_asked_of_forces_needs_them(frame: pd.DataFrame, asked: dict[str, object]) -> None:
-    with pytest.raises(CrankcheckError, match=r"add (--forces|forces=True), or leave torque out"):
+    with pytest.raises(
+        CrankcheckError, match=r"with (--forces|forces=True) only; add it, or leave torque out"
+    ):
         crankcheck.judge(SCENE, frame, step_s=STEP_S, **asked)  # type: ignore[call-overload]
     assert _judged(frame, **asked).verdict == "within"
 

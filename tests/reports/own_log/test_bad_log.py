@@ -50,7 +50,7 @@ OF_ROCKER: dict[str, str] = {
     'kind = "vx"': "'vx' is no kind of reading of link roc",
     'relative_to = "rocker"': "'rocker'; .*another link",
     'units = "deg"': "channel.1.units: unknown key; .*unit",
-    '[[channel]]\ncolumn = "rocker_deg"': "told twice",
+    '[[channel]]\ncolumn = "rocker_deg"': "given twice",
     'of = "crank"\nkind = "angle"': (
         "two columns for one quantity, angle of crank: 'crank_deg' and 'rocker_deg'"
     ),

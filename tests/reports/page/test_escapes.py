@@ -114,11 +114,10 @@ def test_every_output_shows_the_source_as_text(scene: Path, store: Path, page: P
     assert "hacked" not in summary  # only names and reasons are told
 
 
-def test_figures_are_drawn_with_the_source_as_text(
-    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("reports.requests.figures.FORMATS", ["svg"])
-    FiguresRequest(store, tmp_path, only=["mechanism"]).run(Console(quiet=True), Console())
+def test_figures_are_drawn_with_the_source_as_text(store: Path, tmp_path: Path) -> None:
+    FiguresRequest(store, tmp_path, only=["mechanism"], format="svg").run(
+        Console(quiet=True), Console()
+    )
     root = Xml.parse(tmp_path / f"mechanism-{NAME}.svg").getroot()
     assert not [each for each in root.iter() if str(each.tag).endswith("script")]
     shown = " ".join("".join(text.itertext()) for text in root.iter() if text.text)

@@ -186,7 +186,7 @@ def test_faults_of_free_motion_tell_their_runs(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.output
     text = flat(result.output)
     assert "ok energy-missing no energy is in the log CC109 yes" in text
-    assert "Profile tuned, let go: fourbar-swing 0.4 ms, 1 s." in text
+    assert "Profile tuned, free motion: fourbar-swing 0.4 ms, 1 s." in text
     assert "steps a turn" not in text
     content = json.loads(file.read_text())
     assert content["settings"]["free"]["fourbar-pulse"] == {"dt_s": 1e-3, "steps": 1500}
