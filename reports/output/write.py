@@ -13,7 +13,7 @@ import platform
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -161,14 +161,15 @@ class Outputs:
             object.__setattr__(self, "files", {**self.files, "-o": self.folder})
             object.__setattr__(self, "folder", None)
 
-    def check(self, inputs: Iterable[Path | None] = ()) -> None:
+    def check(self, inputs: Iterable[Path | None] = (), edited: Collection[str] = EDITED) -> None:
         """Refuse files, and ``names`` in the folder, that could not be written, two of all these
-        that are one file, and one that is read (``inputs``). Raises CrankcheckError."""
+        that are one file, one that is read (``inputs``), and one that no command wrote, unless its
+        option is among the ``edited``. Raises CrankcheckError."""
         outputs = [(option, path) for option, path in self.files.items() if path is not None]
         read = list(inputs)
         for option, path in outputs:
             check_file(path, option, inputs=read)
-            if option not in EDITED:
+            if option not in edited:
                 with _looking_at(path, option):
                     _refuse_foreign(path, option)
         if self.folder is not None:

@@ -225,22 +225,23 @@ def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
 
 
 def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
-    """Return a test case for each error, and one for the rules on the log as a whole."""
+    """Return a test case for each error, and one for the rules on the log as a whole; of a known
+    failure they are skipped."""
     cases = []
+    kind = "skipped" if judged.is_known else "failure"
     for row in log_rows(judged):
         case = case_of(judged.scene.name, f"{row.what} ({', '.join(row.columns) or 'differenced'})")
         if row.verdict == "out":
             text = f"{row.error.pure:.3g} {share(row.error)}, limit {row.limit.number:.3g}"
             own = {*row.columns}
             why = [cause_text(each) for each in judged.causes if own & {*each.columns}]
-            remark(case, "failure", "\n".join(why), message=text, type="out")
+            remark(case, kind, "\n".join(why), message=text, type="out")
         cases.append(case)
     whole = case_of(judged.scene.name, "the log as a whole")
     if judged.failures:
         text = "\n".join(f"{each.rule}: {each.text}" for each in judged.failures)
-        remark(
-            whole, "failure", text, message=judged.failures[0].text, type=judged.failures[0].rule
-        )
+        message = judged.known_text if judged.is_known else judged.failures[0].text
+        remark(whole, kind, text, message=message, type=judged.failures[0].rule)
     if judged.not_judged:
         remark(whole, "system-out", f"not judged: {', '.join(judged.not_judged)}")
     return suite_of("judge", [*cases, whole], facts)

@@ -202,8 +202,11 @@ def read_matrix(folder: Path) -> Matrix:
         )
     try:
         content = json.loads(regular_bytes(path, MOST_BYTES))
-        if "critical" not in content:
-            raise CrankcheckError(f"{path}: no file of hard cases; name {FILE}, or its folder")
+        if "format" not in content:
+            raise CrankcheckError(
+                f"{path}: no file of hard cases; name {FILE}, or its folder, or run `crankcheck "
+                f"stability -o {folder}` again"
+            )
         if content["format"] != FORMAT:
             raise CrankcheckError(
                 f"{path}: format {content['format']}; this crankcheck reads format {FORMAT}: run "

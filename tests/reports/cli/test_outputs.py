@@ -81,6 +81,7 @@ VERIFY = f"verify {SHORT} --turns 0.2 --no-convergence"
 FOREIGN = {
     f"{VERIFY} --json mine.toml": "--json mine.toml: there is a file that crankcheck did not write",
     f"{VERIFY} --csv map.toml": "--csv map.toml: there is a file",
+    f"{VERIFY} --write-known map.toml": "--write-known map.toml: there is a file",
     f"{VERIFY} --junit x.csv": "--junit x.csv: there is a file",
     f"{VERIFY} --json other.json": "--json other.json: there is a file",
     f"advise mine.toml {ADVISE} --json map.toml": "--json map.toml: there is a file",
@@ -106,6 +107,9 @@ def test_a_document_of_a_command_and_an_empty_file_are_written_over(place: Path)
     for _ in range(2):
         assert crank_alone(*VERIFY.split(), *outputs).exit_code == 0
     assert Path("cells").read_text().startswith("scene,")
+    for _ in range(2):
+        line = "flywheel mine.toml --delta 0.02 -o fly.csv --write fly.toml"
+        assert crank_alone(*line.split()).exit_code == 0
 
 
 SWEEP = f"sweep {SHORT} --steps-per-turn 90 --no-timing"

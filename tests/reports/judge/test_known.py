@@ -109,7 +109,10 @@ def test_a_log_and_a_model_of_the_user_have_known_failures_too(
     told("run fourbar-lecture-1 --engine mujoco --turns 0.1 -o log.csv")
     judge = "judge fourbar-lecture-1 log.csv --target 1e-12"
     told(f"{judge} --write-known log.toml", code=1)
-    assert "KNOWN FAILURE" in told(f"{judge} --known log.toml")
+    assert "KNOWN FAILURE" in told(f"{judge} --known log.toml --junit log.xml")
+    suite = ElementTree.parse("log.xml")
+    assert suite.find(".//skipped") is not None
+    assert suite.find(".//failure") is None
     told("judge fourbar-lecture-1 log.csv --target 1 --known log.toml --strict-known", code=1)
     Path("engine.xml").write_text(SLIDER_CRANK)
     model = "verify --mjcf engine.xml --drive motor --speed 10 --turns 1 --no-convergence"
