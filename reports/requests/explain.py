@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -118,13 +118,9 @@ class ExplainRequest:
 
 
 def _limit(name: str) -> dict[str, object]:
-    """Return the reason of a rule's limit, and the numbers in its formula; empty without one."""
+    """Return the reason of a rule's limit; empty without one."""
     tolerance = getattr(RULES[name], "tolerance", None)
-    if tolerance is None:
-        return {}
-    values = {each.name: each.default for each in fields(tolerance) if each.name != "reason"}
-    changed = [f"{k} {getattr(tolerance, k)}" for k in values if getattr(tolerance, k) != values[k]]
-    return {"limit": f"{tolerance.reason} (reports/judge/tolerance.py: {', '.join(changed)})"}
+    return {"limit": tolerance.reason} if tolerance else {}
 
 
 def _parts(

@@ -206,7 +206,11 @@ def test_a_study_is_gone_on_with_where_all_is_as_before_and_else_refused(path: P
     assert sorted(each.name for each in path.parent.iterdir()) == [".kept.db.lock", "kept.db"]
     for name, value, words in (
         ("target", 1e-4, "holds a search with target 1e-06; requested was target 0.0001"),
-        ("profile", {"iterations": 3}, 'with profile {"iterations": 2}; requested was profile {"it'),
+        (
+            "profile",
+            {"iterations": 3},
+            'with profile {"iterations": 2}; requested was profile {"it',
+        ),
     ):
         with pytest.raises(CrankcheckError, match=words), study_in(path, {**ASKED, name: value}):
             pass
