@@ -110,13 +110,20 @@ class Judged(Evidence):
 One = TypeVar("One", bound=Judged)
 
 
-def marked(every: Sequence[One], path: Path | None, scenes: Sequence[str] = ()) -> list[One]:
-    """Return judged cells, each with its known failure: of a file, by default the shipped one,
-    which is for the shipped among the named ``scenes``. Raises CrankcheckError for a bad file."""
+def marked(every: Sequence[One], known: Sequence[KnownFailure]) -> list[One]:
+    """Return judged cells, each with its known failure."""
+    found = {one.names: one for one in known}
+    return [replace(one, known=found.get(one.names)) for one in every]
+
+
+def known_of(path: Path | None, scenes: Sequence[str] = ()) -> list[KnownFailure]:
+    """Return the known failures of a file, by default the shipped one, which is for the shipped
+    among the named ``scenes``. Raises CrankcheckError as `read_known`."""
+    if path is not None:
+        return read_known(path)
     files = [at for at in find_scenes(scenes) if not at.is_relative_to(SCENE_FOLDER)]
     own = {read_scene(at).name for at in files}
-    found = {one.names: one for one in read_known(path or SHIPPED) if path or one.scene not in own}
-    return [replace(one, known=found.get(one.names)) for one in every]
+    return [one for one in read_known(SHIPPED) if one.scene not in own]
 
 
 def read_known(path: Path) -> list[KnownFailure]:

@@ -330,6 +330,7 @@ class JudgeRequest:
         files = {"-o": self.output, "--json": self.json, "--junit": self.junit}
         outputs = Outputs(files | {"--write-known": self.write_known})
         asked = _checked(self, scene, outputs)
+        failing = known.known_of(self.known)
         tolerance.check_names(scene)
         _refuse_other_targets(scene, asked.target)
         if self.write_map is not None:
@@ -338,7 +339,7 @@ class JudgeRequest:
             say_whole(console, f"{self.write_map}: {told}")
             return 0
         log = any_log.log_of(scene, self.log, self.map, forces=self.forces)
-        (judged,) = known.marked([judge_log(log, asked)], self.known)
+        (judged,) = known.marked([judge_log(log, asked)], failing)
         facts = provenance({})
         with outputs.written(contents(judged, facts)):
             text = f"{markdown(judged, facts)}\n"
@@ -354,7 +355,6 @@ def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogReques
         check_file(request.output, "-o", (".html",))
     files = {"--write-map": request.write_map, **outputs.files}
     Outputs(files).check((find_scene(request.scene), request.log, request.map, request.known))
-    known.marked([], request.known)  # raises for a faulty file
     drive = any_log.drive_of(request.drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")

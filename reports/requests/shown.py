@@ -88,8 +88,10 @@ def present(console: Console, format: str, page: Callable[[], str], *shows: Prin
         console.print(text, end="", markup=False, highlight=False, soft_wrap=True)
     for show in shows if format != "md" else ():
         show(console)
+    if not summary:
+        return
     try:
-        with Path(summary or os.devnull).open("a", encoding="utf-8") as file:
+        with Path(summary).open("a", encoding="utf-8") as file:
             file.write(text)
     except OSError as error:
         tell([f"GITHUB_STEP_SUMMARY {summary}: {error.strerror}; nothing is added to it"])

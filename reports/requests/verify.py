@@ -57,7 +57,7 @@ class VerifyRequest(VerifyOptions):
 
             Outputs(self.files).check(stored_files(self.baseline))
         outputs.check([*find_scenes(self.names), self.known])
-        known.marked([], self.known)  # raises for a faulty file
+        failing = known.known_of(self.known, self.names)
         digests = _digests(self)
         silent = (
             silent_note(requirements.chosen_engines(())) if self.forces and not self.engines else ""
@@ -70,7 +70,7 @@ class VerifyRequest(VerifyOptions):
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("verifying", total=len(cells))
             checked = check_all(cells, self.jobs, lambda _: bar.advance(task))
-        checked = known.marked(checked, self.known, self.names)
+        checked = known.marked(checked, failing)
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
         diff = None

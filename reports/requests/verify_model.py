@@ -15,7 +15,7 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files.assemble import scene_text
-from reports.judge.known import known_file, marked
+from reports.judge.known import known_file, known_of, marked
 from reports.judge.rows import cell_frame, error_frame
 from reports.judge.tolerance import parse
 from reports.output.formats import csv, junit, parquet
@@ -178,13 +178,13 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
     files = request.files | {"--write-scene": request.write_scene}
     outputs = Outputs(files, request.folder, IN_FOLDER)
     outputs.check([asked.path, request.known])
-    marked([], request.known)  # raises for a faulty file
+    failing = known_of(request.known)
     account = read(asked, limits)
     outputs.check(account.files)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("running", total=len(account.profiles))
         judged = run_lines(account, limits, lambda _: bar.advance(task))
-    judged = replace(judged, lines=marked(judged.lines, request.known))
+    judged = replace(judged, lines=marked(judged.lines, failing))
     name = reading_engine()
     facts = provenance({name: engine(name).version()})
     with outputs.written(_contents(judged, facts)):

@@ -10,7 +10,7 @@ import pytest
 from models.errors import CrankcheckError
 from models.files.reading import every_shipped, load_scene
 from reports.judge.cell import Cell, Checked
-from reports.judge.known import SHIPPED, KnownFailure, marked, read_known
+from reports.judge.known import SHIPPED, KnownFailure, known_of, marked, read_known
 from reports.judge.rules.rule import Finding
 from sim.registry import ENGINES
 from tests.worlds.command_line import crank, flat, refused, told
@@ -151,8 +151,8 @@ def test_the_shipped_file_is_for_shipped_scenes_alone(tmp_path: Path) -> None:
     own = tmp_path / "own.toml"
     own.write_text(every_shipped()[one.scene].read_text())
     cells = [bare(name=one.scene, engine=one.engine)]
-    assert marked(cells, None, [one.scene])[0].known == one
-    assert marked(cells, None, [str(own)])[0].known is None
+    assert marked(cells, known_of(None, [one.scene]))[0].known == one
+    assert marked(cells, known_of(None, [str(own)]))[0].known is None
 
 
 @slow("a toggle press in pymunk, and the settings that are tried to mend it")
