@@ -45,7 +45,10 @@ def test_a_floor_has_the_same_words_in_table_page_figure_and_readme(swept: Path)
         parts = words_of(draw_parts(report, SCENE))
     (row,) = re.findall(rf"\| {SCENE} \| mujoco as-shipped \| ([^|]*) \|", table)
     wrong, floor, unit = re.fullmatch(r"(.*): (floor \S+) (rad)", row).groups()
-    assert wrong in flat(README.read_text(encoding="utf-8"))
+    readme = flat(README.read_text(encoding="utf-8"))
+    assert wrong in readme
+    (kept,) = re.findall(r"The four-bar keeps (\S+) rad", readme)
+    assert float(kept) == float(f"{float(floor.removeprefix('floor ')):.0e}")
     assert f"{wrong}: {floor} {unit}" in page
     assert floor in figure
     # Tuned, its size is that of the fit, in all of them.
