@@ -270,4 +270,4 @@ def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     if told:
         parts.append(folded("more", "\n".join(f"- {plain(each)}" for each in told)))
     parts.append("\n".join(f"{plain(line)}  " for line in footer(judged, facts)))
-    return "\n\n".join(part for part in parts if part)
+    return "\n\n".join(part for part in parts if part) + "\n"
