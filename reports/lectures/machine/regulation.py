@@ -267,4 +267,4 @@ def _check(request: FlywheelRequest) -> None:
             found = request.written.suffix or "no ending"
             raise CrankcheckError(f"--write {request.written}: found {found}; use .toml")
         files = {"-o": request.output, "--write": request.written}
-        Outputs(files).check([find_scene(request.scene)], edited=files)
+        Outputs(files).check([find_scene(request.scene)])
