@@ -29,7 +29,7 @@ NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def check_file(
-    path: Path,
+    path: Path | None,
     option: str,
     endings: tuple[str, ...] = (),
     *,
@@ -39,7 +39,9 @@ def check_file(
     """Refuse a file that could not be written, before anything is run. Raises CrankcheckError for
     an ending that is not one of ``endings``, a link, a folder in its place, no folder to hold it,
     no right to write there, that it is read (``inputs``), or that no command wrote it, unless its
-    owner may have ``edited`` it."""
+    owner may have ``edited`` it. None, for no file, is right."""
+    if path is None:
+        return
     if endings and path.suffix.lower() not in endings:
         ending = repr(path.suffix) if path.suffix else "no ending"
         raise CrankcheckError(f"{option} {path}: found {ending}; use {', '.join(endings)}")
@@ -54,8 +56,10 @@ def check_file(
 
 
 PAGES = (".html", ".htm")
-DOCUMENTS = (b"{", b"<?xml", b"<!doctype html", b"## crankcheck", b"<mujoco ", b"PK", b"PAR1")
-DOCUMENTS += (b"%PDF", b"\x89PNG", b"GIF8")
+DOCUMENTS = (
+    *(b"{", b"<?xml", b"<!doctype html", b"## crankcheck", b"<mujoco "),
+    *(b"PK", b"PAR1", b"%PDF", b"\x89PNG", b"GIF8"),
+)
 MARKS = (b"crankcheck", b"<!-- Planar: in the x-y plane")
 TABLES = (b"scene,", b"fault,", b"turned_rad,", b"# Known failures", b'"""Reactions ')
 """First bytes of what commands write: of files with a mark, of which a model has the second; and of

@@ -351,10 +351,8 @@ class JudgeRequest:
 
 def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogRequest:
     """The request for the judgement. Raises CrankcheckError for a fault that shows beforehand."""
-    if request.write_map is not None:
-        check_file(request.write_map, "--write-map", (".toml",))
-    if request.output is not None:
-        check_file(request.output, "-o", (".html",))
+    check_file(request.write_map, "--write-map", (".toml",))
+    check_file(request.output, "-o", (".html",))
     files = {"--write-map": request.write_map, **outputs.files}
     Outputs(files).check((find_scene(request.scene), request.log, request.map, request.known))
     drive = any_log.drive_of(request.drive, forces=request.forces)

@@ -174,8 +174,7 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
     anything is written."""
     asked = _asked(request)
     limits = checked_limits(request.limit_s, request.memory_gb)
-    if request.write_scene is not None:
-        check_file(request.write_scene, "--write-scene", (".toml",))
+    check_file(request.write_scene, "--write-scene", (".toml",))
     files = request.files | {"--write-scene": request.write_scene}
     outputs = Outputs(files, request.folder, IN_FOLDER)
     outputs.check([asked.path, request.known])

@@ -8,11 +8,13 @@ from xml.etree import ElementTree
 
 import pytest
 
+import crankcheck
 from models.errors import CrankcheckError
 from models.files.reading import every_shipped, load_scene
 from reports.judge.cell import Cell, Checked
 from reports.judge.known import SHIPPED, KnownFailure, known_of, marked, read_known
 from reports.judge.rules.rule import Finding
+from reports.judge.tolerance import parse
 from sim.registry import ENGINES
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.own_models import SLIDER_CRANK
@@ -106,6 +108,9 @@ def test_a_file_that_a_run_wrote_turns_its_cells_into_known_ones(tmp_path: Path)
     assert "as it was agreed" in again.read_text()
     told(f"{OUT} --write-known", written, code=1)
     assert "as it was agreed" in written.read_text()
+    asked = {"tolerance": parse([WIDE, "angle=1e-5"]), "turns": 0.5, "converge": False}
+    cell = ("fourbar-lecture-1", "mujoco", "as-shipped")
+    assert crankcheck.check(*cell, **asked, known=written).verdict == "known"
     # Longer steps have more error; a second rule fails; all is right.
     grown = told(f"{OUT} --steps-per-turn 60 --turns 2 --known", written, code=1)
     assert "CC103 has grown from 0.00065 to" in flat(grown)
