@@ -3,13 +3,11 @@
 from collections.abc import Iterable, Mapping
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TypeVar, get_args
 
-from pydantic import BaseModel, ValidationError
-
-from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
+from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown
 from models.files.assemble import SceneTable, faults_of_names, scene_from_table
 from models.files.driver_table import DRIVERS, SLIDES, DriverTable
+from models.files.faults import validated
 from models.files.inputs import UnreadableError, names_in, regular_text, tables
 from models.files.load_table import LOADS, LoadTable
 from models.scene import Scene
@@ -19,7 +17,6 @@ SCENE_FOLDER = Path(__file__).parents[1] / "scenes"
 """Folder of the folders of scene files, one for each kind."""
 KINEMATICS = "kinematics"
 """Default kind of scenes; all its scenes are the default scenes."""
-M = TypeVar("M", bound=BaseModel)
 
 
 def shipped(kind: str = KINEMATICS) -> dict[str, Path]:
@@ -155,7 +152,7 @@ def parse_scene(text: str, place: str) -> Scene:
     except UnreadableError as error:
         raise SceneError(place, [str(error)]) from None
     faults: list[str] = []
-    table = _validated(SceneTable, raw, "", faults)
+    table = validated(SceneTable, raw, "", faults)
     driver = _driver(raw.get("driver"), faults)
     loads = _loads(raw.get("loads"), faults)
     faults += faults_of_names(raw)
@@ -189,7 +186,7 @@ def _driver(raw: object, faults: list[str]) -> DriverTable | None:
     if isinstance(raw.get("link"), list):
         faults.append(f"driver.link: found {shown(raw['link'])}; a scene has one driver, one link")
         return None
-    return _validated(model, raw, "driver.", faults)
+    return validated(model, raw, "driver.", faults)
 
 
 def _loads(raw: object, faults: list[str]) -> dict[str, LoadTable]:
@@ -201,61 +198,6 @@ def _loads(raw: object, faults: list[str]) -> dict[str, LoadTable]:
         model = LOADS.get(law) if isinstance(law, str) else None
         if model is None:
             faults.append(f"{key}.law: found {shown(law)}; use one of {', '.join(LOADS)}")
-        elif (load := _validated(model, table, f"{key}.", faults)) is not None:
+        elif (load := validated(model, table, f"{key}.", faults)) is not None:
             loads[name] = load
     return loads
-
-
-def _validated(
-    model: type[M], raw: Mapping[str, object], prefix: str, faults: list[str]
-) -> M | None:
-    """Validate ``raw`` as ``model``; None with its faults appended."""
-    try:
-        return model.model_validate(raw)
-    except ValidationError as error:
-        for fault in error.errors():
-            if fault["loc"][:1] == ("driver",) and isinstance(raw.get("driver"), list):
-                continue  # `_driver` says it better
-            kind, message, found = fault["type"], fault["msg"], fault["input"]
-            for side, limit in fault.get("ctx", {}).items():
-                words = {"ge": "at least", "le": "at most"}
-                if side in words and isinstance(limit, float):
-                    message = f"use a number of {words[side]} {limit:g}"
-            faults.append(_line(model, prefix, fault["loc"], kind, message, found))
-        return None
-
-
-def _line(
-    model: type[BaseModel],
-    prefix: str,
-    loc: tuple[int | str, ...],
-    kind: str,
-    message: str,
-    found: object,
-) -> str:
-    parts = [str(part) for part in loc if part != "[key]"]
-    key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
-    if kind == "missing":
-        return f"{key}: missing; add it"
-    if kind == "extra_forbidden":
-        return (
-            f"{key}: unknown key; {suggestion(parts[-1], _keys_at(model, loc), 'known:', 1, 0.6)}"
-        )
-    if kind == "string_pattern_mismatch":
-        text = parts[-1] in ("source", "note")
-        message = (
-            "text without control characters (of a terminal, of lines, of direction)"
-            if text
-            else "a name is a letter, then up to 39 letters, digits, - or _"
-        )
-    if kind == "value_error":
-        return f"{key or 'scene'}: {message.removeprefix('Value error, ')}"
-    return f"{key}: found {shown(found)}; {message[0].lower()}{message[1:]}"
-
-
-def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
-    """List the valid keys of the table that holds the unknown key ``loc``."""
-    if len(loc) > 1:  # in a table of the scene, or in one of its tables by name
-        kind = model.model_fields[str(loc[0])].annotation
-        model = (kind, *get_args(kind))[-1]
-    return list(model.model_fields)

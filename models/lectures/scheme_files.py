@@ -10,9 +10,10 @@ from pydantic import Field, model_validator
 
 from models.errors import SceneError, suggestion
 from models.files.assemble import toml_text
+from models.files.faults import read_table
 from models.files.schema import LARGEST, MOST_BODIES, Degrees, Name, Number, Table, Text
 from models.lectures.scheme import FREEDOMS, PLANAR, Place, Scheme, SchemeJoint
-from models.lectures.shipped_tables import find_table, read_table, shipped_in
+from models.lectures.shipped_tables import find_table, shipped_in
 from models.scene import GROUND
 
 Vector = Annotated[list[Number], Field(min_length=2, max_length=3)]

@@ -1,19 +1,16 @@
-"""Small files of tables besides scenes (schemes, contacts): find and read them, report faults."""
+"""Small files of tables besides scenes (schemes, contacts): find them; and the base of tasks."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated
 
-from pydantic import BaseModel, Field, StringConstraints, ValidationError, model_validator
+from pydantic import Field, StringConstraints, model_validator
 
-from models.errors import CrankcheckError, SceneError, cut, nearest, shown
-from models.files.inputs import UnreadableError, regular_text, tables
+from models.errors import CrankcheckError, cut, nearest
 from models.files.reading import is_there
 from models.files.schema import Coordinates, Name, Positive, Table, Text
 from models.lectures.draft import SPEED_RAD_S
-
-M = TypeVar("M", bound=BaseModel)
 
 
 def shipped_in(folder: Path) -> dict[str, Path]:
@@ -35,39 +32,6 @@ def find_table(name_or_path: str, folder: Path, what: str, lists: str) -> Path:
     raise CrankcheckError(
         f"{what} {cut(name_or_path, 80)!r}: neither a shipped name nor a file. {hint}"
     )
-
-
-def read_table(path: Path, model: type[M]) -> M:
-    """Read the tables of a file. Raises SceneError with all its faults."""
-    try:
-        raw = tables(regular_text(path))
-    except UnreadableError as error:
-        raise SceneError(str(path), [str(error)]) from None
-    return table_of(raw, model, str(path))
-
-
-def table_of(raw: dict[str, object], model: type[M], place: str) -> M:
-    """Validate tables as a model; ``place`` names them in messages. Raises SceneError."""
-    try:
-        return model.model_validate(raw)
-    except ValidationError as error:
-        lines = [
-            _line(each["loc"], each["type"], each["msg"], each["input"]) for each in error.errors()
-        ]
-        raise SceneError(place, lines) from None
-
-
-def _line(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
-    key = ".".join(cut(str(part)) for part in loc if part != "[key]")
-    if kind == "missing":
-        return f"{key}: missing; add it"
-    if kind == "extra_forbidden":
-        return f"{key}: unknown key; leave it out"
-    if kind == "value_error":
-        return f"{key}: {message.removeprefix('Value error, ')}".removeprefix(": ")
-    if kind == "string_pattern_mismatch":
-        message = "a name is a letter, then up to 39 letters, digits, - or _"
-    return f"{key}: found {shown(found)}; {message[0].lower()}{message[1:]}"
 
 
 MOST_LOADS = 20

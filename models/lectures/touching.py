@@ -10,8 +10,9 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from models.errors import suggestion
+from models.files.faults import read_table
 from models.files.schema import Name, Number, Table, Text
-from models.lectures.shipped_tables import find_table, read_table, shipped_in
+from models.lectures.shipped_tables import find_table, shipped_in
 
 Vector = tuple[Number, Number, Number]
 CONTACTS = Path(__file__).parents[1] / "contacts"

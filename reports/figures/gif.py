@@ -146,6 +146,7 @@ def animation(scene: Scene, run: DrawnRun | None = None, *, with_forces: bool = 
         duration=round(1000 * FRAME_S),
         loop=0,
         optimize=True,
+        comment=b"crankcheck",
     )
     return buffer.getvalue()
 
@@ -159,7 +160,8 @@ def strip(scene: Scene, run: DrawnRun | None = None, *, with_forces: bool = Fals
         _draw(figure.add_subplot(rows, columns, index + 1), turn, index)
     _legend(figure, turn)
     buffer = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(buffer)  # type: ignore[no-untyped-call]  # as above
+    canvas, mark = FigureCanvasAgg(figure), {"Software": "crankcheck"}
+    canvas.print_png(buffer, metadata=mark)  # type: ignore[no-untyped-call]  # as above
     return buffer.getvalue()
 
 

@@ -183,14 +183,20 @@ IDLE = re.compile(r' transform="rotate\(-0 [^"]*"|(?<=\n) +')
 TEXT = re.compile(r"<text[^>]*>(.*?)</text>", re.DOTALL)
 
 
+FACTS: Mapping[str, Mapping[str, str | None]] = {
+    "svg": {"Creator": "crankcheck", "Date": None},
+    "pdf": {"Creator": "crankcheck", "CreationDate": None},
+    "png": {"Software": "crankcheck"},
+}
+
+
 def saved(figure: Figure, kind: str, title: str) -> bytes:
     """Return the file of a figure, of a kind in `DOTS_PER_IN`, without a date.
 
     In an SVG all text is text, and the letters that it needs of its font go with it; in a PDF the
     fonts are TrueType (type 42), so that text can be searched and edited.
     """
-    undated = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}[kind]
-    facts = {"Title": clean(title), undated: None}
+    facts = {"Title": clean(title), **FACTS[kind]}
     buffer = io.BytesIO()
     with styled():
         figure.savefig(buffer, format=kind, metadata=facts, dpi=DOTS_PER_IN[kind])

@@ -282,8 +282,9 @@ def _row(result: VersionResult, profiles: Sequence[str]) -> list[str]:
     texts = [result.version]
     for profile in profiles:
         cells = [cell for cell in result.cells if cell.name.variant == profile]
-        within = sum(cell.verdict == "within" for cell in cells)
-        texts += [f"{within} of {len(cells)}" if cells else "-", _worst(cells)]
+        within, known = (sum(c.verdict == word for c in cells) for word in ("within", "known"))
+        share = f"{within} of {len(cells)}" + f", {known} known" * bool(known)
+        texts += [share if cells else "-", _worst(cells)]
     return [*texts, result.reason or _ended(result)]
 
 

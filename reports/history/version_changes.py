@@ -138,10 +138,10 @@ def _ended(step: VersionStep) -> list[Headline]:
 def _judged(step: VersionStep) -> list[Headline]:
     """Return cells that come within tolerance, or leave it: a line per profile and direction."""
     groups = grouped(
-        ((pair.name.variant, "within" if pair.new.verdict == "within" else "out"), pair)
+        ((pair.name.variant, "within" if pair.new.passes else "out"), pair)
         for pair in step.diff.pairs
         if pair.old.ok and pair.new.ok
-        if (pair.old.verdict == "within") != (pair.new.verdict == "within")
+        if pair.old.passes != pair.new.passes
     )
     words = {"within": ("within", "out of it"), "out": ("out of", "within it")}
     return [

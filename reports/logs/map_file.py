@@ -24,11 +24,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
-from models.errors import CrankcheckError, listed, shown, suggestion
+from models.errors import CrankcheckError, listed, suggestion
 from models.files.assemble import toml_value
-from models.files.inputs import UnreadableError, regular_text, tables
+from models.files.faults import read_table, table_of
 from reports.logs.kinds import DIMENSION, KINDS, UNITS
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e15, le=1e15)]
@@ -99,26 +99,16 @@ class Map(MapTable):
 
 def read_map(path: Path) -> Map:
     """Read a map. Raises CrankcheckError with every fault of the file."""
-    try:
-        raw = tables(regular_text(path))
-    except UnreadableError as error:
-        raise CrankcheckError(f"--map {path}: {error}") from None
-    return map_of(raw, f"--map {path}")
+    place = f"--map {path}"
+    return _of_known_words(read_table(path, Map, place), place)
 
 
 def map_of(raw: Mapping[str, object], place: str) -> Map:
     """Return a map of such tables, at ``place``. Raises CrankcheckError with every fault."""
-    try:
-        map_ = Map.model_validate(raw)
-    except ValidationError as error:
-        faults = [_fault_text(each["loc"], each["type"], each["msg"], each["input"])
-                  for each in error.errors()]  # fmt: skip
-        raise CrankcheckError(listed(place, faults)) from None
-    _check_words(map_, place)
-    return map_
+    return _of_known_words(table_of(raw, Map, place), place)
 
 
-def _check_words(map_: Map, place: str) -> None:
+def _of_known_words(map_: Map, place: str) -> Map:
     """Refuse unknown units and kinds, and repeated columns; the error has every fault."""
     faults = []
     twice = set[str]()
@@ -138,6 +128,7 @@ def _check_words(map_: Map, place: str) -> None:
             faults.append(f"{where}, kind: {one.kind!r} is unknown; {hint}")
     if faults:
         raise CrankcheckError(listed(place, faults))
+    return map_
 
 
 def form_lines(column: str, reason: str) -> Sequence[str]:
@@ -159,15 +150,3 @@ def table_lines(head: str, table: MapTable) -> Sequence[str]:
 def entries(told: Mapping[str, object]) -> list[str]:
     """Return keys with texts, truths and numbers, as lines of TOML."""
     return [f"{key} = {toml_value(value)}" for key, value in told.items()]
-
-
-def _fault_text(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
-    key = ".".join(str(part + 1) if isinstance(part, int) else part for part in loc)
-    if kind == "missing":
-        return f"{key}: missing; add it"
-    if kind == "extra_forbidden":
-        models: dict[str, type[MapTable]]
-        models = {"file": FileTable, "time": TimeTable, "channel": ChannelTable}
-        owner = models.get(str(loc[0]), Map) if len(loc) > 1 else Map
-        return f"{key}: unknown key; {suggestion(str(loc[-1]), owner.model_fields, 'known:')}"
-    return f"{key}: found {shown(found)}; {message[0].lower()}{message[1:]}"

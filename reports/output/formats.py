@@ -175,6 +175,7 @@ def csv(frame: pd.DataFrame) -> str:
 def parquet(frame: pd.DataFrame) -> bytes:
     """Return the content of a Parquet file that holds the frame, without its index."""
     buffer = io.BytesIO()
+    frame.attrs |= {"written by": "crankcheck"}  # as its metadata
     frame.to_parquet(buffer, index=False)
     return buffer.getvalue()
 
@@ -191,6 +192,7 @@ def workbook(
     import pandas as pd
 
     with pd.ExcelWriter(buffer, engine="openpyxl") as book:
+        book.book.properties.creator = "crankcheck"
         shown = frame.rename(columns=clean)
         shown.to_excel(book, sheet_name=sheet, index=False, freeze_panes=(1, 1))
         about = pd.DataFrame({"what": list(facts), "value": [clean(v) for v in facts.values()]})

@@ -13,7 +13,7 @@ import platform
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -29,11 +29,19 @@ NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def check_file(
-    path: Path, option: str, endings: tuple[str, ...] = (), *, inputs: Iterable[Path | None] = ()
+    path: Path | None,
+    option: str,
+    endings: tuple[str, ...] = (),
+    *,
+    inputs: Iterable[Path | None] = (),
+    edited: bool = False,
 ) -> None:
     """Refuse a file that could not be written, before anything is run. Raises CrankcheckError for
     an ending that is not one of ``endings``, a link, a folder in its place, no folder to hold it,
-    no right to write there, or that it is read (``inputs``)."""
+    no right to write there, that it is read (``inputs``), or that no command wrote it, unless its
+    owner may have ``edited`` it. None, for no file, is right."""
+    if path is None:
+        return
     if endings and path.suffix.lower() not in endings:
         ending = repr(path.suffix) if path.suffix else "no ending"
         raise CrankcheckError(f"{option} {path}: found {ending}; use {', '.join(endings)}")
@@ -42,13 +50,22 @@ def check_file(
             refuse_link(path, option)
             _refuse_input(path, option, inputs)
     _check_place(path, option)
+    if not edited and option not in EDITED:
+        with _looking_at(path, option):
+            _refuse_foreign(path, option)
 
 
 PAGES = (".html", ".htm")
-DOCUMENTS = (b"{", b"<?xml", b"<!doctype html", b"## crankcheck")
-TABLES = (b"scene,", b"fault,", b"# Known failures")
-"""First bytes of what commands write: JSON, JUnit, pages and Markdown that name crankcheck; CSV and
-known failures."""
+DOCUMENTS = (
+    *(b"{", b"<?xml", b"<!doctype html", b"## crankcheck", b"<mujoco "),
+    *(b"PK", b"PAR1", b"%PDF", b"\x89PNG", b"GIF8"),
+)
+MARKS = (b"crankcheck", b"<!-- Planar: in the x-y plane")
+TABLES = (b"scene,", b"fault,", b"turned_rad,", b"# Known failures", b'"""Reactions ')
+"""First bytes of what commands write: of files with a mark, of which a model has the second; and of
+CSV, known failures and recipes, which have none."""
+LOG = re.compile(rb"time_s,([^,]+)_theta_rad,\1_omega_rad_s\b")
+"""First columns of a log; one of a user's own is hardly written so."""
 EDITED = ("--write", "--write-map", "--write-scene")
 """Options of scenes and maps, which their owner edits."""
 
@@ -57,8 +74,13 @@ def _refuse_foreign(path: Path, option: str) -> None:
     """Refuse a file that is there, with content, and is no document of a command. Raises
     CrankcheckError."""
     raw = path.read_bytes() if path.is_file() and not _is_stream(path) else b""
-    ours = raw.startswith(TABLES) or (raw.startswith(DOCUMENTS) and b"crankcheck" in raw)
-    if raw and not ours:
+    if raw.startswith(b"PK"):  # a workbook, whose parts are compressed
+        import zipfile
+
+        with contextlib.suppress(zipfile.BadZipFile, KeyError), zipfile.ZipFile(path) as parts:
+            raw += parts.read("docProps/core.xml")
+    ours = raw.startswith(DOCUMENTS) and any(mark in raw for mark in MARKS)
+    if raw and not (ours or raw.startswith(TABLES) or LOG.match(raw)):
         raise CrankcheckError(
             f"{option} {path}: there is a file that crankcheck did not write; name another, or "
             "remove it"
@@ -161,17 +183,13 @@ class Outputs:
             object.__setattr__(self, "files", {**self.files, "-o": self.folder})
             object.__setattr__(self, "folder", None)
 
-    def check(self, inputs: Iterable[Path | None] = (), edited: Collection[str] = EDITED) -> None:
-        """Refuse files, and ``names`` in the folder, that could not be written, two of all these
-        that are one file, one that is read (``inputs``), and one that no command wrote, unless its
-        option is among the ``edited``. Raises CrankcheckError."""
+    def check(self, inputs: Iterable[Path | None] = ()) -> None:
+        """Refuse files as `check_file`, ``names`` in the folder that could not be written, and two
+        of all these that are one file. Raises CrankcheckError."""
         outputs = [(option, path) for option, path in self.files.items() if path is not None]
         read = list(inputs)
         for option, path in outputs:
             check_file(path, option, inputs=read)
-            if option not in edited:
-                with _looking_at(path, option):
-                    _refuse_foreign(path, option)
         if self.folder is not None:
             check_folder(self.folder, "-o", self.names, inputs=read)
             outputs += [("-o", self.folder / name) for name in self.names]

@@ -265,9 +265,9 @@ def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     ]
     told = [f"drive: {fit_text(judged)}"] if judged.fit else []
     told += [f"not judged: {line}" for line in not_judged_lines(judged)]
-    told += filter(None, [rest_text(judged)])
+    told += filter(None, [rest_text(judged), judged.known_text])
     told += [*(f"not used: {line}" for line in unused_lines(judged)), *judged.notes]
     if told:
         parts.append(folded("more", "\n".join(f"- {plain(each)}" for each in told)))
     parts.append("\n".join(f"{plain(line)}  " for line in footer(judged, facts)))
-    return "\n\n".join(part for part in parts if part)
+    return "\n\n".join(part for part in parts if part) + "\n"

@@ -1,7 +1,7 @@
 """Build the page: sections, style, scripts and Plotly, in one file that loads nothing."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -98,6 +98,15 @@ def render(report: overview.Report, sections: Iterable[Section | None]) -> str:
         looks=list(report.looks.values()),
     )
     return assembled(head, sections)
+
+
+def printed_page(title: str, facts: Mapping[str, str], printed: str) -> str:
+    """Return a page of an answer that is HTML already; its ``title`` is command and verdict."""
+    command, _, verdict = title.partition(": ")
+    head = Head(f"crankcheck {command}", [verdict], facts["made"], "verdict")
+    return assembled(
+        head, [Section("verdict", "Verdict", "shown.html", {"shown": Markup(printed)})]
+    )
 
 
 def assembled(head: Head, shown: Iterable[Section | None]) -> str:

@@ -71,7 +71,7 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
         template="log_verdict.html",
         words={
             "verdict": sentence_text(table.verdict_line(judged).plain),
-            "level": judged.verdict,
+            "level": "within" if judged.verdict == "within" else "out",
             "failures": [
                 (each.rule, RULES[each.rule].title, sentence_text(each.text))
                 for each in judged.failures
@@ -79,7 +79,7 @@ def _verdict(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
             "causes": [(sentence_text(each.text), map_lines(each)) for each in judged.causes],
             "unexplained": unexplained,
             "fit": table.fit_text(judged) if judged.fit else "",
-            "notes": [sentence_text(note) for note in judged.notes],
+            "notes": [sentence_text(each) for each in (*judged.notes, judged.known_text) if each],
             "rows": [_row(row, numbers) for row in rows],
             "rest": table.rest_text(judged),
             "not_judged": table.not_judged_lines(judged),

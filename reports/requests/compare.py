@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from os import PathLike
 from typing import TYPE_CHECKING, cast
 
 from rich.console import Console
@@ -14,6 +15,7 @@ from models.scene import Scene, driver
 from reports.compare import compare as comparing
 from reports.compare.errors import Error, ErrorKind, Errors, largest
 from reports.judge.cell import Cell, Checked, check_run
+from reports.judge.known import marked, read_known
 from reports.judge.tolerance import check_names
 from reports.output.console import grid, say, say_each
 from reports.output.numbers import short
@@ -195,7 +197,7 @@ DRIVES = ("prescribed", "servo")
 class CellVerdict(shown.Shown, Checked):
     """Verdict on a scene in an engine.
 
-    ``verdict`` is "within", "out" or "unsupported"; ``findings`` are the answers of all rules,
+    ``verdict`` is "within", "out", "known" or "unsupported"; ``findings`` are answers of all rules,
     ``failures`` those that make the verdict, and ``advice`` those worth knowing; ``errors`` are the
     numbers, ``limits`` their tolerances; ``facts`` says where they come from.
     """
@@ -238,6 +240,7 @@ def check(
     forces: bool = False,
     segments: int | None = None,
     springs: str | None = None,
+    known: str | PathLike[str] | None = None,
 ) -> CellVerdict:
     """Run a scene in an engine and compare it with the closed form, as `crankcheck verify` does.
 
@@ -252,6 +255,8 @@ def check(
         Run it at half and quarter step too, and report how the error changes.
     forces : bool
         Compare the reactions and the driving torque with kinetostatics as well.
+    known : path or None
+        A file of known failures, as of `crankcheck verify --known`; none are known without it.
 
     Raises
     ------
@@ -264,6 +269,7 @@ def check(
     name, profile = arguments.engine_of(engine, profile, settings)
     driven = cast(Drive, arguments.one_of(drive, "--drive", DRIVES))
     limits = arguments.tolerances_of(tolerance, "tolerance")
+    failing = [] if known is None else read_known(arguments.path_of(known, "known"), "known")
     bent = given_of([scene], segments, springs)
     refuse_unfollowed(scene)
     length = Length(dt_s, steps_per_turn, turns)
@@ -282,7 +288,8 @@ def check(
         segments=bent.segments,
         springs=bent.springs,
     )
-    return _with_facts(advised(cell))
+    (checked,) = marked([advised(cell)], failing)
+    return _with_facts(checked)
 
 
 def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> CellVerdict:

@@ -1,6 +1,7 @@
 """`crankcheck diff`: two stored runs, and the change of every cell."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -9,9 +10,9 @@ from rich.console import Console
 from reports.diff.document import markdown, show_diff, suite
 from reports.output.console import tell
 from reports.output.formats import junit
+from reports.output.printed import present
 from reports.output.write import Outputs
 from reports.requests.options import TextFormat, argument, output_option
-from reports.requests.shown import present
 from reports.results.changes import compare
 from reports.results.stored_runs import CELLS, FACTS, read_run
 from reports.store.folder import paths_of
@@ -70,9 +71,8 @@ class DiffRequest:
         for run in (old, new) if self.old != self.new else (old,):
             tell(run.notice)
         diff = compare(old, new, self.factor)
-        page = markdown(diff, self.strict)
-        contents = {"-o": lambda: page, "--junit": lambda: junit(suite(diff, self.strict))}
-        with outputs.written(contents):
-            shown = "text" if self.output else self.format
-            present(console, shown, lambda: page, lambda to: show_diff(to, diff, self.strict))
+        page = partial(markdown, diff, self.strict)
+        with outputs.written({"-o": page, "--junit": lambda: junit(suite(diff, self.strict))}):
+            format = "text" if self.output else self.format
+            present(console, format, "", lambda to: show_diff(to, diff, self.strict), page=page)
         return diff.code(self.strict)

@@ -27,7 +27,7 @@ from reports.output.console import grid, put, say
 from reports.output.numbers import duration
 from reports.output.write import check_file, write
 from reports.plan.requirements import under_control
-from reports.plan.steps import MOST_STEPS
+from reports.plan.steps import MOST_STEPS, positive
 from reports.protocol.way import way_of
 from reports.requests.options import SceneName, given, option, output_option
 from reports.requests.run import RunRequest
@@ -54,8 +54,7 @@ class ExportRequest:
 
         Loops are closed at the pins of ``close``, the others where `models.mjcf.tree` says.
         """
-        if self.output is not None:
-            check_file(self.output, "-o", (".xml",), inputs=[find_scene(self.scene)])
+        check_file(self.output, "-o", (".xml",), inputs=[find_scene(self.scene)])
         own = under_control(outlined(load_scene(self.scene)))
         if any(not pair.facets for pair in own.cams.values()):
             raise CrankcheckError(
@@ -81,13 +80,8 @@ class ForceRecipeRequest:
 
     def run(self, console: Console, progress: Console) -> int:
         """Write the program into a file or to the terminal."""
-        if self.output is not None:
-            check_file(self.output, "-o", (".py",), inputs=[find_scene(self.scene)])
-        if not (math.isfinite(self.steps_per_turn) and self.steps_per_turn > 0.0):
-            raise CrankcheckError(
-                f"--steps-per-turn: found {self.steps_per_turn:g}; give a number above 0"
-            )
-        if self.steps_per_turn > MOST_STEPS:
+        check_file(self.output, "-o", (".py",), inputs=[find_scene(self.scene)])
+        if positive("--steps-per-turn", self.steps_per_turn, "steps") > MOST_STEPS:
             raise CrankcheckError(
                 f"--steps-per-turn: found {self.steps_per_turn:g}; the program keeps a line for "
                 f"each step, so give {MOST_STEPS} at most"
@@ -121,22 +115,21 @@ class ViewRequest:
 
         Raises CrankcheckError for a scene or a file that can not be used, or for lack of forces.
         """
-        output = self.output
-        read = [find_scene(self.scene)]
-        if output is not None:
-            check_file(output, "-o", PICTURES, inputs=read)
-        scene = outlined(load_scene(self.scene))
+        scene, output = outlined(load_scene(self.scene)), self.output
+        headless = output is None and (self.forces or self.engine or not has_screen())
+        if headless:
+            output = Path(f"{scene.name}.gif")
+        option = "view" if headless else "-o"
+        check_file(output, option, PICTURES, inputs=[find_scene(self.scene)])
         if self.forces and self.engine:
             raise CrankcheckError("--forces with --engine: a picture has one of them; leave one")
         for of_run in given(self, "profile", "magnify") if self.engine is None else ():
             raise CrankcheckError(f"{of_run}: no run is drawn; give --engine as well")
         run = None if self.engine is None else self._run()
-        if output is None and has_screen() and not (self.forces or run):
+        if output is None:
             viewer()(*way_of(scene).opened(scene))
             return 0
-        if output is None:
-            output = Path(f"{scene.name}.gif")
-            check_file(output, "view", PICTURES, inputs=read)
+        if headless:
             why = "" if self.forces or run else "no screen here, so "
             console.print(f"{why}drawn into a file:", style="dim")
         from reports.figures import gif as picture

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, overload
 
@@ -22,6 +23,7 @@ from reports.logs.map_file import Map, read_map
 from reports.output.console import say_whole
 from reports.output.formats import junit
 from reports.output.numbers import finite
+from reports.output.printed import present
 from reports.output.write import Outputs, check_file, provenance, write
 from reports.own_log.judged import JudgedLog, judge_log, row_table
 from reports.own_log.log_limits import EVERY, LogRequest
@@ -32,7 +34,7 @@ from reports.protocol.way import way_of
 from reports.requests import any_log, arguments, options
 from reports.requests.compare import CellVerdict, verdict_of_run
 from reports.requests.options import argument, option, output_option, seconds
-from reports.requests.shown import Shown, present
+from reports.requests.shown import Shown
 from reports.requests.solution import drawn
 from sim.engine import Run
 
@@ -92,7 +94,6 @@ def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[
         "--json": lambda: _json(judged, facts),
         "--junit": lambda: junit(suite(judged, facts)),
         "-o": page,
-        "--write-known": lambda: known.known_file([judged]),
     }
 
 
@@ -330,7 +331,7 @@ class JudgeRequest:
         files = {"-o": self.output, "--json": self.json, "--junit": self.junit}
         outputs = Outputs(files | {"--write-known": self.write_known})
         asked = _checked(self, scene, outputs)
-        failing = known.known_of(self.known)
+        failing, before = known.known_of(self.known), known.written_before(self.write_known)
         tolerance.check_names(scene)
         _refuse_other_targets(scene, asked.target)
         if self.write_map is not None:
@@ -341,18 +342,17 @@ class JudgeRequest:
         log = any_log.log_of(scene, self.log, self.map, forces=self.forces)
         (judged,) = known.marked([judge_log(log, asked)], failing)
         facts = provenance({})
-        with outputs.written(contents(judged, facts)):
-            text = f"{markdown(judged, facts)}\n"
-            present(console, self.format, lambda: text, lambda to: show(to, judged, facts))
+        written = {"--write-known": lambda: known.known_file([judged], before)}
+        with outputs.written(contents(judged, facts) | written):
+            page = partial(markdown, judged, facts)
+            present(console, self.format, "", lambda to: show(to, judged, facts), page=page)
         return int(judged.verdict == "out" or (self.strict_known and bool(judged.mended)))
 
 
 def _checked(request: JudgeRequest, scene: Scene, outputs: Outputs) -> LogRequest:
     """The request for the judgement. Raises CrankcheckError for a fault that shows beforehand."""
-    if request.write_map is not None:
-        check_file(request.write_map, "--write-map", (".toml",))
-    if request.output is not None:
-        check_file(request.output, "-o", (".html",))
+    check_file(request.write_map, "--write-map", (".toml",))
+    check_file(request.output, "-o", (".html",))
     files = {"--write-map": request.write_map, **outputs.files}
     Outputs(files).check((find_scene(request.scene), request.log, request.map, request.known))
     drive = any_log.drive_of(request.drive, forces=request.forces)

@@ -107,8 +107,7 @@ class ReportRequest:
         output, format = self.output, format_of(self.format)
         if output is None and format == "html":
             output = Path("report.html")
-        if output is not None:
-            check_file(output, "-o", ENDINGS[format])
+        check_file(output, "-o", ENDINGS[format])
         made = report_of(self.folder, format)
         if output is None:
             console.file.write(made.text)

@@ -152,8 +152,7 @@ class RunRequest:
 
         Raises CrankcheckError for a faulty request, and for a scene that the engine can not hold.
         """
-        if self.output is not None:
-            write.check_file(self.output, "-o", formats.ENDINGS, inputs=[find_scene(self.scene)])
+        write.check_file(self.output, "-o", formats.ENDINGS, inputs=[find_scene(self.scene)])
         done = self.answer()
         if done.motion is None:
             raise CrankcheckError(f"{done.scene}, {done.engine}: {done.status}: {done.reason}")

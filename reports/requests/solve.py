@@ -152,9 +152,8 @@ class SolveRequest(SolveOptions):
     @laid_out
     def run(self, console: Console, progress: Console) -> int:
         """Show or write the reference. Raises CrankcheckError for a faulty request."""
-        if self.output is not None:
-            endings = (*ENDINGS, solving.PAGE) if self.family is None else solving.FAMILY_ENDINGS
-            check_file(self.output, "-o", endings, inputs=[find_scene(self.scene)])
+        endings = (*ENDINGS, solving.PAGE) if self.family is None else solving.FAMILY_ENDINGS
+        check_file(self.output, "-o", endings, inputs=[find_scene(self.scene)])
         scene = load_scene(self.scene)
         if self.family is not None:
             named(FAMILY)(scene, self, console)

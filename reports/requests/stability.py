@@ -16,6 +16,7 @@ from reports.judge.cell import Checked
 from reports.output.console import say, say_whole
 from reports.output.formats import csv, json_text
 from reports.output.numbers import count
+from reports.output.printed import Print, present
 from reports.output.write import Outputs, provenance
 from reports.plan.requirements import PROFILES, chosen_engines, chosen_profiles
 from reports.plan.singular import silent_note
@@ -30,7 +31,6 @@ from reports.requests.options import (
     option,
     output_option,
 )
-from reports.requests.shown import Print, as_markdown, present
 from reports.selftest import trial
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.table import place_row, show_faults
@@ -99,8 +99,7 @@ class StabilityRequest:
         shows: list[Print] = [partial(show, matrix=matrix)]
         shows += [partial(show_changes, found=found)] * bool(base)
         with outputs.written({name: partial(of, matrix) for name, of in CONTENTS.items()}):
-            page = partial(as_markdown, "stability", *shows[::-1])
-            present(console, self.format, page, *shows)
+            present(console, self.format, "stability", *shows)
         if self.folder is not None:
             say(console, f"{self.folder}: {', '.join(CONTENTS)}")
         return int(is_worse(found))

@@ -17,13 +17,13 @@ from reports.judge import known, rows, tolerance
 from reports.judge.cell import Cell, Checked
 from reports.output.console import say_whole, tell
 from reports.output.formats import csv, json_text, junit, parquet
+from reports.output.printed import Print, as_html, present
 from reports.output.write import Outputs, provenance
 from reports.plan import requirements
 from reports.plan.singular import gives_forces, silent_note
 from reports.protocol.length import Length
 from reports.protocol.way import driven_by, laid_out, way_of
 from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
-from reports.requests.shown import Print, as_markdown, as_page, present
 from reports.requests.solution import drawn
 from reports.verify.advised import check_all
 from reports.verify.table import show, suite, summary
@@ -58,14 +58,12 @@ class VerifyRequest(VerifyOptions):
             Outputs(self.files).check(stored_files(self.baseline))
         outputs.check([*find_scenes(self.names), self.known])
         failing = known.known_of(self.known, self.names)
+        before = known.written_before(self.write_known)
         digests = _digests(self)
         silent = (
             silent_note(requirements.chosen_engines(())) if self.forces and not self.engines else ""
         )
-        for note in filter(
-            None, (*passages(cells), silent, requirements.left_out_note(self.names))
-        ):
-            say_whole(progress, note)
+        say_whole(progress, *passages(cells), silent, requirements.left_out_note(self.names))
         base = _baseline(self, cells, digests)
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("verifying", total=len(cells))
@@ -85,10 +83,16 @@ class VerifyRequest(VerifyOptions):
 
             shows.append(partial(show_diff, diff=diff))
         title = f"verify: {summary(checked).plain}"
-        scenes = {one.cell.scene.name: one.cell.scene for one in checked}.values()
-        page = {"verify.html": lambda: as_page(title, facts, "".join(map(drawn, scenes)), *shows)}
-        with outputs.written(contents(checked, facts, digests, diff) | page):
-            present(console, self.format, lambda: as_markdown(title, *shows[::-1]), *shows)
+
+        def page() -> str:
+            from reports.page.build import printed_page  # whose packages nothing else here needs
+
+            scenes = {one.cell.scene.name: one.cell.scene for one in checked}.values()
+            return printed_page(title, facts, as_html("".join(map(drawn, scenes)), *shows))
+
+        files = contents(checked, facts, digests, diff, before) | {"verify.html": page}
+        with outputs.written(files):
+            present(console, self.format, title, *shows)
         mended = self.strict_known and any(one.mended for one in checked)
         return _code(checked, diff, progress) or int(mended)
 
@@ -222,9 +226,10 @@ def contents(
     facts: Mapping[str, str],
     digests: Mapping[str, str],
     diff: Diff | None,
+    before: Sequence[known.KnownFailure],
 ) -> dict[str, Callable[[], bytes | str]]:
-    """Contents of the files: cells, their origin, digests of the texts of their scenes, and changes
-    since the baseline."""
+    """Contents of the files: cells, their origin, digests of the texts of their scenes, changes
+    since the baseline, and known failures with reasons from ``before``."""
 
     def suites() -> str:
         if diff is None:
@@ -238,7 +243,9 @@ def contents(
         "verify.json": lambda: _json(checked, facts, digests),
         "verify.junit.xml": suites,
         "errors.parquet": lambda: parquet(rows.error_frame(checked)),
-        "--write-known": lambda: known.known_file(one for one in checked if one.cell.gated),
+        "--write-known": lambda: known.known_file(
+            (one for one in checked if one.cell.gated), before
+        ),
     }
 
 

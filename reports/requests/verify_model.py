@@ -15,10 +15,11 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files.assemble import scene_text
-from reports.judge.known import known_file, known_of, marked
+from reports.judge.known import known_file, known_of, marked, written_before
 from reports.judge.rows import cell_frame, error_frame
 from reports.judge.tolerance import parse
 from reports.output.formats import csv, junit, parquet
+from reports.output.printed import present
 from reports.output.write import Outputs, check_file, provenance
 from reports.own_model.account import read
 from reports.own_model.assembly import ModelRequest
@@ -27,7 +28,7 @@ from reports.own_model.table import document, is_diff, recommended_head, show, v
 from reports.plan.steps import TURNS, positive
 from reports.requests import arguments
 from reports.requests.options import PRESCRIBED, VerifyOptions, given
-from reports.requests.shown import Shown, as_markdown, present
+from reports.requests.shown import Shown
 from reports.verify.table import suite
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
 from sim.registry import engine
@@ -173,12 +174,11 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
     anything is written."""
     asked = _asked(request)
     limits = checked_limits(request.limit_s, request.memory_gb)
-    if request.write_scene is not None:
-        check_file(request.write_scene, "--write-scene", (".toml",))
+    check_file(request.write_scene, "--write-scene", (".toml",))
     files = request.files | {"--write-scene": request.write_scene}
     outputs = Outputs(files, request.folder, IN_FOLDER)
     outputs.check([asked.path, request.known])
-    failing = known_of(request.known)
+    failing, before = known_of(request.known), written_before(request.write_known)
     account = read(asked, limits)
     outputs.check(account.files)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
@@ -187,9 +187,10 @@ def verify_model(request: VerifyOptions, console: Console, progress: Console) ->
     judged = replace(judged, lines=marked(judged.lines, failing))
     name = reading_engine()
     facts = provenance({name: engine(name).version()})
-    with outputs.written(_contents(judged, facts)):
-        told, title = partial(show, judged=judged, facts=facts), verdict_text(judged)
-        present(console, request.format, lambda: as_markdown(f"verify: {title}", told), told)
+    known = {"--write-known": lambda: known_file([judged.own], before)}
+    with outputs.written(_contents(judged, facts) | known):
+        title = f"verify: {verdict_text(judged)}"
+        present(console, request.format, title, partial(show, judged=judged, facts=facts))
     mended = int(request.strict_known and bool(judged.own.mended))
     return {"within": mended, "known": mended, "out": 1}.get(judged.verdict, 2)
 
@@ -240,7 +241,6 @@ def _contents(
         "verify.json": lambda: document(judged, facts),
         "verify.junit.xml": lambda: junit(suite(judged.lines, facts)),
         "errors.parquet": lambda: parquet(error_frame(judged.lines)),
-        "--write-known": lambda: known_file([judged.own]),
         "scene.toml": lambda: scene_text(judged.scene),
         # Empty where there is none: one of an earlier run must not stay.
         "recommended.diff": lambda: judged.patch if is_diff(judged.patch) else "",

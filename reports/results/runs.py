@@ -91,6 +91,11 @@ class StoredCell:
     def ok(self) -> bool:
         return self.status == "ok"
 
+    @property
+    def passes(self) -> bool:
+        """True if it was within tolerance, or failed as was known."""
+        return self.verdict in ("within", "known")
+
 
 @dataclass(frozen=True)
 class StoredRun:

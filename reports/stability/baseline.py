@@ -6,6 +6,7 @@ moved where these ranges of both runs have no value in common.
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,17 +22,16 @@ from reports.stability.matrix import (
     CaseFacts,
     Critical,
     Graded,
+    Line,
     Matrix,
     label,
     read_matrix,
 )
-from reports.stability.running import CaseLine
+from reports.stability.running import CaseLine, harder
 
 ROUNDING = 1.1
 """Growth of the largest error up to which another outcome is no change: two processors differ by
 less."""
-Line = tuple[str, str, str]
-"""Case, engine and profile."""
 Word = Literal["worse", "better", "not compared"]
 
 
@@ -48,8 +48,8 @@ def baseline(place: Path, planned: Iterable[CaseLine]) -> Matrix:
     """Return the earlier run in a folder or file. Raises CrankcheckError where it can not be read,
     or none of its lines is ``planned`` now."""
     old = read_matrix(place)
-    if not _lines(old).keys() & {(each.case, each.engine, each.profile) for each in planned}:
-        held = few((" ".join(line) for line in _lines(old)), 3)
+    if not old.lines.keys() & {each.line for each in planned}:
+        held = few((" ".join(line) for line in old.lines), 3)
         raise CrankcheckError(
             f"--baseline {place}: holds no case, engine and profile that is to run now, but {held}"
         )
@@ -58,31 +58,22 @@ def baseline(place: Path, planned: Iterable[CaseLine]) -> Matrix:
 
 def changes(old: Matrix, new: Matrix) -> list[LineChange]:
     """Return the changes of all lines of either run, the worse ones first."""
-    before, now = _lines(old), _lines(new)
+    before, now = old.lines, new.lines
     found = []
     for line in {**before, **now}:
         if line not in now or line not in before:
             found.append(LineChange("not compared", line, "new" if line in now else "not run now"))
-        elif _meaning(old.case(line[0])) != _meaning(new.case(line[0])):
+        elif old.case(line[0]).meaning != new.case(line[0]).meaning:
             found.append(LineChange("not compared", line, "the case is another one now"))
         else:
             found += _changes(old, new, before[line], now[line])
     return sorted(found, key=lambda change: change.word != "worse")
 
 
-def _lines(matrix: Matrix) -> dict[Line, Critical]:
-    return {(each.case, each.engine, each.profile): each for each in matrix.critical}
-
-
-def _meaning(case: CaseFacts) -> tuple[object, ...]:
-    """Return the facts of a case on which its outcomes depend."""
-    return case.parameter, case.unit, case.good, case.within, case.error_of
-
-
 def _changes(old: Matrix, new: Matrix, was: Critical, now: Critical) -> Iterator[LineChange]:
     """Yield the changes of one line: of each value of both runs, and of the critical value."""
-    line = was.case, was.engine, was.profile
-    case, before, after = new.case(was.case), _runs(old, line), _runs(new, line)
+    line, case = now.line, new.case(now.case)
+    before, after = old.runs_of(line), new.runs_of(line)
     unit = f" [{case.unit}]" if case.unit else ""
     for value in (each for each in case.values if each in before and each in after):
         first, last = before[value], after[value]
@@ -90,16 +81,11 @@ def _changes(old: Matrix, new: Matrix, was: Critical, now: Critical) -> Iterator
         if ranks[0] != ranks[1] and not _within_rounding(first, last):
             words = f"at {label(value)}{unit} {first.outcome} before, {last.outcome} now"
             yield LineChange("worse" if ranks[1] > ranks[0] else "better", line, words)
-    harder = -1.0 if case.values[-1] < case.values[0] else 1.0
     moved: tuple[tuple[Word, Critical, Critical], ...] = ("worse", was, now), ("better", now, was)
     for word, hard, easy in moved:
-        if harder * easy.fails < harder * hard.holds:  # false where either is NaN
+        if harder(case) * easy.fails < harder(case) * hard.holds:  # false where either is NaN
             words = f"critical value{unit} {_bracket(was)} before, {_bracket(now)} now"
             yield LineChange(word, line, words)
-
-
-def _runs(matrix: Matrix, line: Line) -> dict[float, Graded]:
-    return {run.value: run for run in matrix.runs if (run.case, run.engine, run.profile) == line}
 
 
 def _rank(case: CaseFacts, run: Graded) -> int:
@@ -126,8 +112,7 @@ def is_worse(found: Iterable[LineChange]) -> bool:
 
 def show_changes(console: Console, found: Sequence[LineChange]) -> None:
     """Print the verdict, then each change with its case, engine and profile."""
-    words = [each.word for each in found]
-    counts = {"worse": 0, "better": 0} | {word: words.count(word) for word in words}
+    counts = {"worse": 0, "better": 0} | Counter(each.word for each in found)
     verdict, style = ("WORSE", "bold red") if is_worse(found) else ("NOT WORSE", "bold green")
     say(console, f"{verdict}: {', '.join(f'{n} {word}' for word, n in counts.items())}", style)
     for each in found:

@@ -78,9 +78,30 @@ class CaseFacts:
         if not self.values or len(self.labels) != len(self.values):
             raise ValueError(f"{self.name}: {len(self.labels)} labels, {len(self.values)} values")
 
+    @property
+    def meaning(self) -> tuple[object, ...]:
+        """Facts on which the outcomes depend."""
+        return self.parameter, self.unit, self.good, self.within, self.error_of
+
+
+Line = tuple[str, str, str]
+
 
 @dataclass(frozen=True)
-class Graded:
+class OfLine:
+    """Part of a line: a case in an engine with a profile."""
+
+    case: str
+    engine: str
+    profile: str
+
+    @property
+    def line(self) -> Line:
+        return self.case, self.engine, self.profile
+
+
+@dataclass(frozen=True)
+class Graded(OfLine):
     """One run of a case at one value, graded.
 
     ``error`` is the worst error of place, ``gap`` the widest open pin, ``drive`` the error of the
@@ -91,9 +112,6 @@ class Graded:
     largest of their kind, NaN where none were requested; it is shown, and does not grade.
     """
 
-    case: str
-    engine: str
-    profile: str
     value: float
     label: str
     outcome: Outcome
@@ -112,7 +130,7 @@ class Graded:
 
 
 @dataclass(frozen=True)
-class Critical:
+class Critical(OfLine):
     """Hardest value up to which one engine with one profile holds a case.
 
     ``holds`` is the hardest value, from the easy end on, up to which every run was good, ``fails``
@@ -121,9 +139,6 @@ class Critical:
     where nothing fails).
     """
 
-    case: str
-    engine: str
-    profile: str
     holds: float
     fails: float
     outcome: Outcome
@@ -132,17 +147,13 @@ class Critical:
 
 
 @dataclass(frozen=True)
-class Picture:
+class Picture(OfLine):
     """A run that failed, to be seen moving beside the reference.
 
     ``drawing`` is the result of `reports.drawing.moving.drawing`, and ``rows`` the run's
-    displacements from it; ``title`` describes the picture. ``case``, ``engine``, ``profile`` and
-    ``value`` identify the run.
+    displacements from it; ``title`` describes the picture. Its line and ``value`` identify the run.
     """
 
-    case: str
-    engine: str
-    profile: str
     value: float
     label: str
     title: str
@@ -163,6 +174,15 @@ class Matrix:
     def case(self, name: str) -> CaseFacts:
         """Return the case of that name."""
         return next(case for case in self.cases if case.name == name)
+
+    @property
+    def lines(self) -> dict[Line, Critical]:
+        """How far each line holds."""
+        return {each.line: each for each in self.critical}
+
+    def runs_of(self, line: Line) -> dict[float, Graded]:
+        """Return the runs of a line by their values."""
+        return {run.value: run for run in self.runs if run.line == line}
 
 
 def with_forces(matrix: Matrix) -> bool:
@@ -214,7 +234,12 @@ def read_matrix(folder: Path) -> Matrix:
             )
         rows = {key: [_numbers(row) for row in content[key]] for key in ("runs", "critical")}
         parts = {key: content[key] for key in ("facts", "cases", "pictures")}
-        return TypeAdapter(Matrix).validate_python(parts | rows)
+        matrix = TypeAdapter(Matrix).validate_python(parts | rows)
+        names = {case.name for case in matrix.cases}
+        for each in (*matrix.runs, *matrix.critical):
+            if each.case not in names:
+                raise ValueError(f"{each.case!r} is not among its cases")
+        return matrix
     except BAD as error:
         why = str(error).partition("\n")[0]
         raise CrankcheckError(

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from models.errors import CrankcheckError
 from reports.stability.case import Case
 from reports.stability.grading import CATALOGUE, GradedPicture, graded
-from reports.stability.matrix import Critical, Graded, Picture, label
+from reports.stability.matrix import CaseFacts, Critical, Graded, OfLine, Picture, label
 from reports.workers.isolated import Isolated, Limits, Lost, as_they_end, in_order
 
 LOOKS = 7
@@ -114,7 +114,7 @@ def _words(case: Case, holds: Graded | None, fails: Graded | None, good: list[Gr
     return f"holds {way} {value}, then {fails.outcome}"
 
 
-def harder(case: Case) -> float:
+def harder(case: Case | CaseFacts) -> float:
     """Return the sign by which the values of a case grow harder."""
     return -1.0 if case.values[-1] < case.values[0] else 1.0
 
@@ -124,12 +124,9 @@ MEMORY_GB = 4.0
 
 
 @dataclass(frozen=True)
-class CaseLine:
-    """A case in one engine with one profile, with its ``forces`` or without."""
+class CaseLine(OfLine):
+    """A line with its ``forces`` or without."""
 
-    case: str
-    engine: str
-    profile: str
     forces: bool = False
 
 
@@ -195,8 +192,8 @@ def _graded(
         return replace(found, grid=grid), drawn
     if isinstance(answer.error, CrankcheckError):
         raise CrankcheckError(f"case {given.case} at {label(value)}: {answer.error}")
-    trial, names = CATALOGUE[given.case].trial(value), (given.case, given.engine, given.profile)
-    lost = Graded(*names, value, label(value), "crashed", answer.reason, grid=grid)
+    trial = CATALOGUE[given.case].trial(value)
+    lost = Graded(*given.line, value, label(value), "crashed", answer.reason, grid=grid)
     return replace(lost, steps=trial.steps, dt_s=trial.dt_s), None
 
 

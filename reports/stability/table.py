@@ -64,12 +64,7 @@ def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
         table.add_column(text, justify="right", no_wrap=True, header_style="dim")
     table.add_column("", overflow="fold")
     for critical in lines:
-        runs = {
-            run.value: run
-            for run in matrix.runs
-            if (run.case, run.engine, run.profile) == (case.name, critical.engine, critical.profile)
-            and run.grid
-        }
+        runs = {at: run for at, run in matrix.runs_of(critical.line).items() if run.grid}
         cells = [_cell(case, runs.get(value)) for value in case.values]
         name = f"  {critical.engine} {critical.profile}"
         style = _style(case, critical.outcome)

@@ -169,7 +169,7 @@ Asked = Mapping[str, object]
 
 def check_storage(path: Path) -> None:
     """Refuse a file that no search can be kept in, before anything runs. Raises CrankcheckError."""
-    check_file(path, "-o", ENDINGS)
+    check_file(path, "-o", ENDINGS, edited=True)
     if not path.exists():
         return
     if not path.is_file():  # a pipe would be waited for

@@ -19,11 +19,16 @@ ENDS = ("ok", "diverged", "locked", "branch-changed")
 
 
 def advised(cell: Cell) -> Checked:
-    """Return `judge.cell.check`; where profile tuned fails by an error that settings can mend, the
+    """Return `judge.cell.check` with remedies."""
+    return remedied(check(cell))
+
+
+def remedied(checked: Checked) -> Checked:
+    """Return a checked cell; where profile tuned fails by an error that settings can mend, the
     remedies of its engine are tried at the same step, and the cures give their results."""
-    checked = check(cell)
     if not _mendable(checked):
         return checked
+    cell = checked.cell
     adapter = engine(cell.engine)
     settings = resolved(profile_of(adapter, cell.profile), cell.settings)
     choices = remedies(cell.engine, cell.given, cell.truth.start, settings)

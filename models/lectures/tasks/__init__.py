@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from models.errors import CrankcheckError, suggestion
-from models.lectures.shipped_tables import TaskTable, find_table, read_table, shipped_in
+from models.files.faults import read_table
+from models.lectures.shipped_tables import TaskTable, find_table, shipped_in
 from models.lectures.tasks.curves import FunctionTable, PathTable, StraightLineTable
 from models.lectures.tasks.positions import CouplerTask, QuickReturnTask, RockerTask, StrokeTask
 

@@ -8,10 +8,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from models.files.faults import read_table
 from models.files.pair_tables import MOST_SEGMENTS, SegmentTable, law_of
 from models.files.schema import Degrees, Name, NonNegative, Number, Positive, Table
 from models.files.schema import Text as NoteText
-from models.lectures.shipped_tables import Source, find_table, read_table
+from models.lectures.shipped_tables import Source, find_table
 from models.lectures.tasks import TASKS
 from models.scene.cam_laws import CamLaw
 from models.scene.cams import Follower, OscillatingFollower, TranslatingFollower

@@ -18,7 +18,8 @@ from analytic.lectures.synthesis.examine import Examined
 from analytic.lectures.synthesis.sensitivity import monte_carlo, sensitivity
 from analytic.lectures.synthesis.solutions import Solutions, solutions_of
 from models.errors import CrankcheckError, shown
-from models.lectures.shipped_tables import TaskTable, table_of
+from models.files.faults import table_of
+from models.lectures.shipped_tables import TaskTable
 from models.lectures.tasks import KINDS, load_task, refuse_unknown, shipped_tasks
 from models.scene import Scene
 from reports.lectures.design import design_tables

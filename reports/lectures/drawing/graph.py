@@ -52,9 +52,8 @@ class GraphRequest:
         over = _chosen("--over", self.over, OVERS, " or ")
         if self.map is not None and self.log is None:
             raise CrankcheckError(f"--map {self.map}: belongs to a log; give --log as well")
-        if self.output is not None:
-            read = [find_scene(self.scene), self.log, self.map]
-            check_file(self.output, "-o", ENDINGS, inputs=read)
+        read = [find_scene(self.scene), self.log, self.map]
+        check_file(self.output, "-o", ENDINGS, inputs=read)
         scene = load_scene(self.scene)
         of = over_period(scene, self.of, over, self.duration_s)
         log = None

@@ -49,8 +49,8 @@ class MobilityRequest:
             _list(console)
             return 0
         scheme = load_scheme(self.scheme)
-        if self.output is not None:
-            check_file(self.output, "-o", (".toml",), inputs=[find_scheme(self.scheme)])
+        read = [find_scheme(self.scheme)]
+        check_file(self.output, "-o", (".toml",), inputs=read, edited=True)
         mobility = scheme_mobility(scheme)
         show_mobility(console, mobility)
         if self.replace:

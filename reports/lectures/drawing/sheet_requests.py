@@ -87,8 +87,7 @@ class CentresRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Show or draw centres. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
-        if self.output is not None:
-            check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
+        check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
         scene = load_scene(self.scene)
         refuse_other_than_cranked(scene, "a sheet of instant centres", analyse(scene))
         # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
@@ -165,8 +164,7 @@ class ChainsRequest:
     def run(self, console: Console, progress: Console) -> int:
         """List or draw chains. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
-        if self.output is not None:
-            check_file(self.output, "-o", ENDINGS)
+        check_file(self.output, "-o", ENDINGS)
         named = list(_asked(self))
         rows = [row for name, chain in named for row in _rows(self, name, chain)]
         kind = "chains" if self.sliders is None else "types of chains"

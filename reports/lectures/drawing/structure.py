@@ -118,8 +118,7 @@ class StructureRequest:
     def run(self, console: Console, progress: Console) -> int:
         """Show or draw the structure. Raises CrankcheckError for a faulty request."""
         paper = Paper.of(self.paper)
-        if self.output is not None:
-            check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
+        check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
         scene = load_scene(self.scene)
         structure = analyse(scene)
         coordinate = float(scene.driver.law.at(np.zeros(1))[0][0])

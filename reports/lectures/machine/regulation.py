@@ -180,8 +180,7 @@ class CycleRequest(Layout):
 def _check_outputs(request: CycleRequest | FlywheelRequest) -> None:
     """Refuse files that could not be written, before the calculation. Raises CrankcheckError."""
     inputs = [find_scene(request.scene)]
-    if request.output is not None:
-        check_file(request.output, "-o", (*ENDINGS, NUMBERS, PAGE), inputs=inputs)
+    check_file(request.output, "-o", (*ENDINGS, NUMBERS, PAGE), inputs=inputs)
     if request.figures is not None:
         from reports.lectures.machine.regulation_figures import REGULATION_FIGURES
 
@@ -262,9 +261,6 @@ def _check(request: FlywheelRequest) -> None:
     _check_outputs(request)
     if request.free and request.written is None:
         raise CrankcheckError("--free: it says how the scene is written; give --write FILE.toml")
-    if request.written is not None:
-        if request.written.suffix.lower() != ".toml":
-            found = request.written.suffix or "no ending"
-            raise CrankcheckError(f"--write {request.written}: found {found}; use .toml")
-        files = {"-o": request.output, "--write": request.written}
-        Outputs(files).check([find_scene(request.scene)], edited=files)
+    check_file(request.written, "--write", (".toml",))
+    files = {"-o": request.output, "--write": request.written}
+    Outputs(files).check([find_scene(request.scene)])

@@ -13,7 +13,7 @@ from reports.output.numbers import count, error_text
 from reports.page.sections.section import PageReport, Section, fitting
 from reports.results.engine_table import FEWEST
 from reports.stability import grades, table
-from reports.stability.matrix import OUTCOMES, CaseFacts, Graded, Matrix, Outcome, Picture
+from reports.stability.matrix import OUTCOMES, CaseFacts, Graded, Line, Matrix, Outcome, Picture
 from reports.stability.running import command
 
 ROOM = 800_000
@@ -92,20 +92,18 @@ def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
         if number is not None and picture.case in places:
             shown.append((number, picture))
     shown.sort(key=lambda x: (places[x[1].case], columns.index((x[1].engine, x[1].profile)), x[0]))
-    ranks = Counter[tuple[str, str, str]]()
+    ranks = Counter[Line]()
     order = []
     for index, (_, one) in enumerate(shown):
-        line = (one.case, one.engine, one.profile)
-        ranks[line] += 1
-        order.append((ranks[line], index))
+        ranks[one.line] += 1
+        order.append((ranks[one.line], index))
     sizes = [len(embedded([one.drawing, one.rows])) for _, one in shown]
     return [shown[i] for i in fitting([index for _, index in sorted(order)], sizes, room)]
 
 
 def _number(matrix: Matrix, picture: Picture) -> int | None:
-    wanted = (picture.case, picture.engine, picture.profile)
     for number, run in enumerate(matrix.runs):
-        if (run.case, run.engine, run.profile) == wanted and same(run.value, picture.value):
+        if run.line == picture.line and same(run.value, picture.value):
             return number
     return None
 

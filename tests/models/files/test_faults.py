@@ -27,7 +27,7 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
                                                                                                                                            "DC "
                                                                                                                                            "is "
                                                                                                                                            "0"),
-        "infinity": ("D = [0.3, 0.0]", "D = [inf, 0.0]", "ground.points.D.0: found inf"),
+        "infinity": ("D = [0.3, 0.0]", "D = [inf, 0.0]", "ground.points.D.1: found inf"),
         "two drivers as tables": ("[driver]", '[[driver]]\nlink = "rocker"\nspeed_rad_s = '
                                               '1.0\n[[driver]]', "driver: found a list of 2"),
         "two drivers as a list": ('link = "crank"', 'link = ["crank", '
@@ -305,9 +305,9 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
                                                                          "ground is one of the two "
                                                                          "gears"),
         "no teeth": ("teeth = [20, 40]", "", "gears.inner.teeth: missing"),
-        "part of a tooth": ("[20, 40]", "[20, 40.5]", "gears.inner.teeth.1: found 40.5; input "
+        "part of a tooth": ("[20, 40]", "[20, 40.5]", "gears.inner.teeth.2: found 40.5; input "
                                                       "should be a valid integer"),
-        "no tooth": ("[20, 40]", "[0, 40]", "gears.inner.teeth.0: found 0; input should be greater "
+        "no tooth": ("[20, 40]", "[0, 40]", "gears.inner.teeth.1: found 0; input should be greater "
                                             "than or equal to 1"),
         "gear that is not pinned": ("planet]\npoints = { P", "planet]\npoints = { R", "gears.inner: "
                                                                                       "planet "

@@ -5,9 +5,14 @@ import re
 import shutil
 from pathlib import Path
 
+import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from models.files.reading import shipped
+from reports.figures.style import saved
+from reports.output.formats import write_frame
+from reports.output.write import check_file, write
 from tests.worlds.command_line import crank, crank_alone, flat
 from tests.worlds.tiers import few
 from tests.worlds.without_pdf import without_pdf
@@ -88,17 +93,37 @@ FOREIGN = {
     "selftest --fault drive-other --json map.toml": "--json map.toml: there is a file",
     f"{JUDGE} --junit map.toml": "--junit map.toml: there is a file",
     "diff out out --junit map.toml": "--junit map.toml: there is a file",
+    "report out -o mine.html": "-o mine.html: there is a file",
+    f"run mine.toml {COARSE} -o mine.parquet": "-o mine.parquet: there is a file",
+    "view mine.toml": "view fourbar-lecture-1.gif: there is a file",
+    "view mine.toml -o mine.png": "-o mine.png: there is a file",
+    "export mine.toml -o mine.xml": "-o mine.xml: there is a file",
+    "recipe forces --engine mujoco -o mine.py": "-o mine.py: there is a file",
+    "solve mine.toml -o mine.xlsx": "-o mine.xlsx: there is a file",
+    "cycle mine.toml -o mine.csv": "-o mine.csv: there is a file",
+    "positions mine.toml -o mine.pdf": "-o mine.pdf: there is a file",
 }
 
 
 @pytest.mark.parametrize("line", FOREIGN)
 def test_a_file_that_no_command_wrote_is_not_written_over(line: str, place: Path) -> None:
     Path("other.json").write_text('{"name": "a package"}')
+    heads = {"html": "<!doctype html>", "parquet": "PAR1", "png": "\x89PNG", "pdf": "%PDF-1.4"}
+    for ending, head in (heads | {"py": '"""Mine."""', "xlsx": "PK\x03\x04"}).items():
+        Path(f"mine.{ending}").write_text(head + " of mine", encoding="latin-1")
     before = files(place)
     result = crank(*line.split())
     assert result.exit_code == 2, result.output
     assert FOREIGN[line] in flat(result.stderr)
     assert files(place) == before
+
+
+AGAIN = [
+    "flywheel mine.toml --delta 0.02 -o fly.csv --write fly.toml",
+    f"run mine.toml {COARSE} -o log.csv",
+    "export mine.toml -o loop.xml",
+    "recipe forces --engine mujoco -o forces.py",
+]
 
 
 def test_a_document_of_a_command_and_an_empty_file_are_written_over(place: Path) -> None:
@@ -107,9 +132,17 @@ def test_a_document_of_a_command_and_an_empty_file_are_written_over(place: Path)
     for _ in range(2):
         assert crank_alone(*VERIFY.split(), *outputs).exit_code == 0
     assert Path("cells").read_text().startswith("scene,")
-    for _ in range(2):
-        line = "flywheel mine.toml --delta 0.02 -o fly.csv --write fly.toml"
-        assert crank_alone(*line.split()).exit_code == 0
+    for line in AGAIN * 2:
+        assert crank_alone(*line.split()).exit_code == 0, line
+
+
+def test_pictures_tables_and_workbooks_have_a_mark_and_are_written_over(tmp_path: Path) -> None:
+    for kind in ("svg", "pdf", "png"):
+        write(tmp_path / f"a.{kind}", saved(Figure(), kind, "title"))
+    for ending in (".parquet", ".xlsx"):
+        write_frame(tmp_path / f"a{ending}", pd.DataFrame({"time_s": [0.0]}), "log", {})
+    for path in tmp_path.iterdir():
+        check_file(path, "-o")
 
 
 SWEEP = f"sweep {SHORT} --steps-per-turn 90 --no-timing"

@@ -98,7 +98,7 @@ OF_JOINTS = [
     (LINE.replace("along = [1.0, 0.0, 0.0]", "along = [1.0, 1.0, 0.0]"), "not across the norm"),
     (LINE.replace("along", "axis"), "along: missing"),
     (LINE + "lead_m = 0.1", "lead_m: not of a line contact"),
-    (LINE + '[guided.here]\nleaves = ["Qq"]', "guided.here.leaves.0: found 'Qq'"),
+    (LINE + '[guided.here]\nleaves = ["Qq"]', "guided.here.leaves.1: found 'Qq'"),
     (LINE.partition("[[")[0], "contacts: missing"),
 ]
 

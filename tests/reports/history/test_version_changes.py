@@ -12,7 +12,7 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from reports.history.environments import EngineVersion
 from reports.history.table import page, ranking, show, table_text
-from reports.history.verification import VersionResult, errors_of, read_version
+from reports.history.verification import VersionResult, errors_of, overview, read_version
 from reports.history.version_changes import FollowedChange, headlines, steps
 from reports.results.runs import CellName, StoredCell, StoredRun
 
@@ -99,6 +99,11 @@ def test_versions_that_agree_are_said_to_and_cells_that_come_within_tolerance_co
     better, worse = told(out, within), told(within, out)
     assert better == ["2 is within tolerance where 1 was out of it: 2 scenes as shipped"]
     assert worse == ["2 is out of tolerance where 1 was within it: 2 scenes as shipped"]
+    known = [cell(name, verdict="known", angle=0.95) for name in ("fourbar", "shaper")]
+    calm = ["2 differs from 1 in no error by more than a tenth"]
+    assert told(known, within) == told(within, known) == calm
+    _, (row,) = overview([result("1", known[0], within[1])])
+    assert row[:2] == ["1", "1 of 2, 1 known"]
 
 
 def test_a_run_that_ends_otherwise_stands_out_and_its_errors_are_not_compared() -> None:

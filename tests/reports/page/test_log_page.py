@@ -15,6 +15,7 @@ from playwright.sync_api import Page
 from analytic.kinematics import solve
 from models.files.reading import load_scene
 from reports.causes.cause import Cause
+from reports.judge.known import KnownFailure
 from reports.logs.map_file import ChannelTable, Map
 from reports.own_log.judged import JudgedLog
 from reports.page.build import _plotly
@@ -73,6 +74,13 @@ def test_the_verdict_is_told_with_the_errors_in_the_units_of_the_columns(text: s
     assert "[[channel]] column = &#34;rocker_deg&#34; offset = -0.5" in told
     assert "remark: it names no link, point or slider of the scene" in told
     assert "Not judged: gap of A, D, B, C" in told
+
+
+def test_a_known_failure_is_told_with_its_reason(out: JudgedLog) -> None:
+    known = KnownFailure(scene=SCENE.name, engine="log", reason="as agreed", rules=out.sizes)
+    told = words(log_page(replace(out, known=known), FACTS))
+    assert "KNOWN FAILURE: 1 of 6 errors" in told
+    assert "known: as agreed" in told
 
 
 def test_a_log_within_tolerance_needs_no_why_and_a_fitted_drive_is_told_with_its_doubt() -> None:

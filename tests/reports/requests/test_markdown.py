@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.text import Text
 
 from reports.output.console import grid, hanging
-from reports.requests.shown import COMMENT, as_markdown, present
+from reports.output.printed import COMMENT, as_markdown, present
 from tests.worlds.command_line import crank, crank_alone, flat
 
 VERIFY = ("verify", "fourbar-lecture-1", "--no-convergence", "--turns", 0.5, "--jobs", 1)
@@ -60,7 +60,7 @@ def test_a_summary_that_can_not_be_written_costs_a_line_alone(
 ) -> None:
     monkeypatch.setenv(SUMMARY, str(tmp_path))
     console = Console(file=StringIO())
-    present(console, "text", lambda: "# page", lambda to: to.print("text"))
+    present(console, "text", "run", lambda to: to.print("text"))
     assert isinstance(console.file, StringIO)
     assert console.file.getvalue() == "text\n"
     assert "nothing is added to it" in flat(capsys.readouterr().err)

@@ -125,3 +125,10 @@ def test_what_can_not_be_compared_is_refused_before_the_run(tmp_path: Path) -> N
         crank(*LINE, "--baseline", tmp_path / "old.json"),
         "holds no case, engine and profile that is to run now, but grashof-excess pymunk tuned",
     )
+
+
+def test_an_earlier_run_whose_case_is_gone_from_its_file_is_refused(tmp_path: Path) -> None:
+    text = to_json(matrix(GOOD, 5e-4, 4.8e-4, case="coarse-step"))
+    path = tmp_path / "old.json"
+    path.write_text(text.replace('"name": "coarse-step"', '"name": "gone"'), encoding="utf-8")
+    refused(crank(*LINE, "--baseline", path), "'coarse-step' is not among its cases")

@@ -175,6 +175,7 @@ def _animated(frames: list[Image.Image], seconds: list[float]) -> bytes:
     frames[0].save(
         buffer, "GIF", save_all=True, append_images=frames[1:],
         duration=[round(1000 * each) for each in seconds], loop=0, optimize=True,
+        comment=b"crankcheck",
     )  # fmt: skip
     return buffer.getvalue()
 

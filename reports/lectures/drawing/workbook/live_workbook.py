@@ -183,6 +183,7 @@ def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
         for cell in row:
             cell.data_type = "s"  # a text that begins with "=" is no formula
     add_live(book, table)
+    book.properties.creator = "crankcheck"
     buffer = io.BytesIO()
     book.save(buffer)
     return buffer.getvalue()
