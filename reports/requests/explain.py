@@ -45,8 +45,8 @@ ADDED = ("drive", "model floor", "discretisation")
 @dataclass(frozen=True)
 class ExplainRequest:
     what: Annotated[str, argument("WHAT", "A rule (CC110), a clause (EC52), or a scene.")]
-    engine: Annotated[str | None, option("Of a scene: the engine.", "--engine")] = None
-    profile: Annotated[str, option("Of a scene: the settings.", "--profile")] = "tuned"
+    engine: Annotated[str | None, option("Engine that runs the scene.", "--engine")] = None
+    profile: Annotated[str, option("Settings in which it runs.", "--profile")] = "tuned"
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
     json: Annotated[Path | None, "Write the answer as JSON."] = None
@@ -76,9 +76,9 @@ class ExplainRequest:
                 return {}
             near = nearest(name, [*RULES, *CLAUSES]) or nearest(self.what, every_shipped())
             hint = f"did you mean {' or '.join(near)}?" if near else "see `crankcheck scenes`"
-            raise CrankcheckError(f"{cut(self.what)!r}: no rule, no clause, no scene; {hint}")
+            raise CrankcheckError(f"{cut(self.what)!r}: no such rule, clause or scene; {hint}")
         if of_scene:
-            raise CrankcheckError(f"{of_scene[0]}: {name} is no scene; leave it out")
+            raise CrankcheckError(f"{of_scene[0]}: for a scene, and {name} is none; leave it out")
         if name in CLAUSES:
             of = CLAUSES[name]
             return {"clause": f"{name} {of.title}", "why": of.why, "what helps": of.cure}
@@ -87,7 +87,7 @@ class ExplainRequest:
         return answer | _limit(name) | {"what helps": rule.cure}
 
     def _of_cell(self) -> dict[str, object]:
-        """Return the verdict, the error by part, the limit that binds, and what to turn."""
+        """Return the verdict, the error by part, the limit that binds, and what to change."""
         if self.engine is None:
             raise CrankcheckError(f"--engine is missing: name the one that runs {self.what}")
         steps = self.dt_s, self.steps_per_turn

@@ -187,5 +187,5 @@ def test_limits_of_the_other_kind_of_motion_are_refused_of_runs_too() -> None:
 
 def test_a_free_run_that_has_hardly_begun_is_not_judged() -> None:
     done = crankcheck.run(SWING, "mujoco", duration_s=5e-3)
-    with pytest.raises(CrankcheckError, match="5 steps; free motion is judged from"):
+    with pytest.raises(CrankcheckError, match="5 steps, and a judgement of free motion needs"):
         crankcheck.judge(SWING, done)

@@ -99,7 +99,7 @@ def test_odd_arguments_are_errors_of_ours_told_at_the_call(
         (lambda: crankcheck.check(SCENE, drive="free"), "^drive 'free': unknown; use prescribed"),
         (lambda: crankcheck.check(SCENE, tolerance=1e-3), "tolerance: found 0.001; give a dict"),
         (lambda: crankcheck.judge(SCENE, LOG, target=1, map={"time": 1}), "^map: time: found 1"),
-        (lambda: assert_within(SCENE, LOG, angel=1e-3), "^angel: it is no quantity; did you mean"),
+        (lambda: assert_within(SCENE, LOG, angel=1e-3), "^angel: not a quantity; did you mean"),
         (lambda: crankcheck.judge(SCENE, {}, target=1), "^the log: found no columns; give times"),
         (lambda: crankcheck.sweep(SCENE, __file__), "^folder .*.py is a file; name a folder"),
         (lambda: crankcheck.check_model(3, "A", 1.0), "^model: found 3; give a path$"),
