@@ -111,7 +111,7 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     "a quote that never closes": (cell(7, 2, '"7'), "row 9|quote"),
     "nothing of the scene": (
         header("crank_deg,rocker_deg,C_x_mm", "a,b,c"),
-        "no column is of scene fourbar-lecture-1, which has crank.*found .*write-map"),
+        "no column belongs to scene fourbar-lecture-1, which has crank.*found .*write-map"),
     "binary": (bytes(range(256)) * 99, "no text|not UTF-8 text|null bytes"),
     "a workbook called .csv": (b"PK\x03\x04" + bytes(999), "null bytes"),
     "UTF-16": (text(*ROWS).decode().encode("utf-16")[:-1], "UTF-16 text that is cut; save the"),
@@ -192,8 +192,8 @@ PARQUET: dict[str, tuple[Made, str]] = {
     "NaN": (partial(table, C_x_mm=np.full(61, np.nan)), "row 1, column 'C_x_mm': found nan .61 su"),
     "no rows": (partial(bare, time_s=pa.array([], pa.float64())), "no rows"),
     "no columns": (bare, "no columns|no rows|empty"),
-    "text that is none": (text(*ROWS), "no Parquet that can be read"),
-    "cut short": (partial(cut_short, table), "no Parquet that can be read"),
+    "text that is none": (text(*ROWS), "not readable as Parquet"),
+    "cut short": (partial(cut_short, table), "not readable as Parquet"),
     "empty": (b"", "empty"),
 }  # fmt: skip
 
@@ -283,7 +283,7 @@ WORKBOOKS: dict[str, tuple[Made, str]] = {
     "a bomb": (bomb, "bytes when it is unpacked; at most .* are read|no workbook"),
     "a cell far away": (
         partial(sheet_of, inside=FAR), "cells up to row 300000 and column 1000; at most"),
-    "laughs": (partial(sheet_of, inside=LAUGHS), "no workbook that can be read"),
-    "text that is none": (text(*ROWS), "no workbook that can be read"),
-    "cut short": (partial(cut_short, book), "no workbook that can be read"),
+    "laughs": (partial(sheet_of, inside=LAUGHS), "not readable as a workbook"),
+    "text that is none": (text(*ROWS), "not readable as a workbook"),
+    "cut short": (partial(cut_short, book), "not readable as a workbook"),
 }  # fmt: skip

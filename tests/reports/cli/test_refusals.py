@@ -66,7 +66,7 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     "sweep massless.toml --engine mujoco --forces -o out": "no link or slider has a mass",
     "solve massless.toml --forces": ["no link or slider has a mass", "mass_kg"],
     "solve pulsed.toml --forces --at-deg 90": ["loads.pulse follows time",
-                                               "ask for a motion over time"],
+                                               "request a motion over time"],
     "solve shaper --figures figs": ["--figures", "give --forces"],
     "solve shaper --forces --figures figs --at-deg 90": ["--at-deg 90", "they belong to a turn"],
     "solve shaper -o out.html --at-deg 90": ["-o out.html", "leave out --at-deg"],

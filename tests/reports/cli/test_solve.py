@@ -146,7 +146,7 @@ def test_where_it_may_jam_the_numbers_stay_without_a_bound(tmp_path: Path) -> No
     output = told("solve --at-deg 90 --forces", helped)
     assert abs(row(output, "piston block ground")[-2]) > 100.0
     said = flat(output)
-    assert "Two equilibria here, as the mechanism may jam: these forces, those of less" in said
+    assert "Two equilibria here, as the mechanism may jam: these forces are those of less" in said
     assert "It may jam with crank from 80.5961 to 99.4039 deg and from 260.596" in said
     assert "no useful work is done in it, so it has no efficiency." in said
 

@@ -62,7 +62,7 @@ TOLD = {
     "solve fourbar-elastic --steps-per-turn 4": "EI = 4.725 N m^2, from 77.3704 rad/s on (10.5"
     " times the speed | by 8 polynomials across each, with the shortening of bent links"
     " | 0.2131743 180 0.0005291017 | deflection of its middle 0.00105172 m 125 deg | Starts on the"
-    " periodic motion: it comes back after a period | deflections are off by about",
+    " periodic motion, with the period of the driver | finer description: deflections",
     "solve fourbar-double-rocker-swing --duration 0.5 --steps 2": "Limits in which driver turns"
     " back: -92.866 deg at 0.415855 s (C).",
     "solve fourbar-elastic-controlled --turns 0.004 --modes 1 --steps-per-turn 500":

@@ -166,10 +166,10 @@ def test_what_is_no_log_is_told(tmp_path: Path, text: str, words: str) -> None:
 @pytest.mark.parametrize(
     ("cell", "words"),
     [
-        ("1;5", "row 3, column 'a': found '1;5', no number"),
-        ('"1,000"', "row 3, column 'a': found '1,000', no number; write decimal points, or say"),
-        ("1'000.5", "row 3, column 'a': found .*no number; write numbers without marks"),
-        ("00:01", "row 3, column 'a': found '00:01', no number; write seconds"),
+        ("1;5", "row 3, column 'a': found '1;5', not a number"),
+        ('"1,000"', "row 3, column 'a': found '1,000', not a number; write decimal points, or set"),
+        ("1'000.5", "row 3, column 'a': found .*not a number; write numbers without marks"),
+        ("00:01", "row 3, column 'a': found '00:01', not a number; write seconds"),
         ("1.5D-3", "row 3, column 'a': found '1.5D-3', .*write e for"),
     ],
 )

@@ -138,7 +138,7 @@ print("after")
 def test_a_folder_that_the_system_has_a_link_to_is_no_stream(name: str) -> None:
     if not Path(name).is_symlink():
         pytest.skip("no such link here")
-    refused(f"--csv {name}: a link, to .*; name that itself", check_file, Path(name), "--csv")
+    refused(f"--csv {name}: a link to .*; name this file itself", check_file, Path(name), "--csv")
 
 
 @pytest.mark.skipif(not os.access("/dev/shm", os.W_OK), reason="no such folder here")

@@ -166,7 +166,7 @@ def test_rows_of_which_the_truth_is_not_known_are_left_out_and_counted() -> None
         ),
         (TIME_S * 1e4, {}, "check the unit of its times"),
         (TIME_S, {"drive": "logged"}, "drive logged: fourbar-swing is in free motion"),
-        (TIME_S, {"target": None}, "no limit for angle: no step of a log is known"),
+        (TIME_S, {"target": None}, "no limit for angle: the step of the log is unknown"),
     ],
 )
 def test_what_is_not_judged_is_told(time_s: object, asked: dict[str, object], told: str) -> None:

@@ -65,7 +65,7 @@ def test_each_quantity_may_have_a_target_of_its_own_and_needs_one_without_a_step
     assert rules(judged(columns)) == ["CC106"]
     assert rules(judged(columns, {"angle": 1e-3, "velocity": 0.1})) == []
     assert_within(SCENE, {"t": TIME_S, **columns}, target=1e-3, velocity=0.1)
-    with pytest.raises(CrankcheckError, match="no limit for velocity: no step of a log is known"):
+    with pytest.raises(CrankcheckError, match="no limit for velocity: the step of the log is unknown"):
         judged(columns, {"angle": 1e-3})
 
 
@@ -246,7 +246,7 @@ def test_a_table_over_the_angle_of_the_crank_needs_no_times(case: str) -> None:
     alone = judge(columns, drive="logged")
     assert {row.quantity for row in alone.errors.rows} == {"angle", "position"}
     for asked, words in (
-        ({"drive": "fitted"}, "which a speed takes"),
+        ({"drive": "fitted"}, "which a speed needs"),
         ({"step_s": 1e-3}, "which a step takes"),
     ):
         with pytest.raises(CrankcheckError, match=words):

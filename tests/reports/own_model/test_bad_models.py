@@ -174,7 +174,7 @@ ASKED = {
         {"joint": "B"},
         "body crank, and not against the ground; drivable: A, D",
     ),
-    "no such choice": ({"branch": {"X": 1}}, "--branch X: it chooses between no two assemblies"),
+    "no such choice": ({"branch": {"X": 1}}, "--branch X: it separates no assemblies"),
     "far round": ({"start_deg": 36001.0}, "--start 36001: that is more than 100 turns"),
     "too coarse": ({"dt_s": 0.5}, "a turn needs at least 8"),
     "too short": ({"turns": 0.1}, "take 0.127 turns or more"),

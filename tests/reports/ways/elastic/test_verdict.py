@@ -55,7 +55,7 @@ def test_the_engine_and_the_segments_are_told_apart(slider_crank: Scene) -> None
     assert facts.chain == pytest.approx(deflection, rel=0.01)
     assert facts.doubt < 1e-3 < facts.linear < 0.02
     (said,) = (finding for finding in checked.findings if finding.rule == "CC134")
-    assert "the segments end before the engine does" in said.text
+    assert "the segments limit the accuracy" in said.text
     assert said.level == "pass"
     row = cell_row(checked)
     assert (row["segments"], row["springs"]) == (4.0, "plain")

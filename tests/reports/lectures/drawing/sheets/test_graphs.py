@@ -295,7 +295,7 @@ LATE = ONCE | {"rocker_theta_rad": ROCKER.exact(0, EVEN + 0.2)}
 UNFIT: list[tuple[dict[str, Array], str]] = [
     (CUT, "to 0.628319 s: log 0.628319 s or more"),
     (LATE, "another scene, speed, start or unit"),
-    ({"time_s": EVEN, "lever_theta_rad": THETA}, "no column is of scene"),
+    ({"time_s": EVEN, "lever_theta_rad": THETA}, "no column belongs to scene"),
     ({"time_s": EVEN, "crank_theta_rad": 0.5 * np.pi + 10.0 * EVEN}, "no column is of rocker"),
     (
         {"time_s": EVEN, "rocker_omega_rad_s": ROCKER.exact(1, EVEN)},
