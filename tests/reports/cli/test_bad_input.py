@@ -102,7 +102,7 @@ YAML: dict[str, tuple[bytes, str]] = {
     "date that is none as a key": (b"2020-13-45: 1", "2020-13-45: unknown key; known: scenes"),
     "number as a key": (b"1: 1", "1: found 1; keys should be strings"),
     "billion laughs": (nested(10, 9), "line 5, column .*: more than 5000 values, those of an al"),
-    "itself": (b"scenes: &a [*a]", "line 1, column 13: an alias for what it stands in; name"),
+    "itself": (b"scenes: &a [*a]", "line 1, column 13: an alias of the part that holds it; refer"),
     "brackets": (b"a: " + b"[" * 90_000, "line 1, column 13: values nested more than 10 deep"),
     "5001 keys": (many("a#: 1\n", 5001).encode(), "more than 5000 val"),
     "tag": (b"turns: !!python/object:os.system x", "could not determine a constructor"),

@@ -141,7 +141,7 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     f"{EXCESS} --at 5": ["too far off", "0.01 to 1e-6 m"],
     f"{EXCESS} --limit-s 0": "--limit-s 0: give a number above 0",
     "stability long-fourbar --at 2.5": ["not a whole number", "turns"],
-    "stability wrong-branch --at 5": "has the one value -1",
+    "stability wrong-branch --at 5": "has only the value -1",
     f"{EXCESS} --at 1e-3 -o x": "--at and -o",
     "stability coarse-step --elastic": "no elastic link in it; those are elastic",
     "stability --free --elastic": "no case belongs to both",

@@ -106,7 +106,7 @@ def test_a_linkage_that_is_open_is_told_from_a_phase_that_runs_away() -> None:
     assert "CC128" in rules(opened)
     assert any("the geometry is off" in note for note in opened.notes)
     assert phase.causes == opened.causes == ()
-    assert "not searched for causes" in no_cause_text(opened, ["rocker_rad"])
+    assert "causes are not searched" in no_cause_text(opened, ["rocker_rad"])
     assert "sensitivity" in footer(opened, {})[0]
 
 

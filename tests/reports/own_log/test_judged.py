@@ -313,7 +313,7 @@ def test_the_joint_that_opens_most_is_told() -> None:
 @pytest.mark.parametrize(
     ("error", "words"),
     [
-        (0.01 * np.sin(2.0 * CRANK.theta) ** 3 + 0.002 * WOBBLE, "comes back every turn"),
+        (0.01 * np.sin(2.0 * CRANK.theta) ** 3 + 0.002 * WOBBLE, "repeats every turn"),
         (WOBBLE, "has another shape"),
         (0.05 * TIME_S**1.5 + WOBBLE / 3.0, "grows or falls linearly"),
     ],
