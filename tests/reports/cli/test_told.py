@@ -39,7 +39,7 @@ TOLD = {
     " slider C -3.7271082 -2.7891124 | C 0.35000000 0.74833148",
     f"solve {PISTON} --forces": "driving force 15.4 | slider C at",
     f"graph {PISTON} --of rod": "no. C m phi rad | 12 0.30000",
-    f"rotatability {PISTON}": f"{PISTON}: the branch that it is on alone | slider C ends at 0.2 m: "
+    f"rotatability {PISTON}": f"{PISTON}: only its own branch | slider C ends at 0.2 m: "
     "crank and rod in line",
     # Forces: m a of the block along its line is the rod's, and the guide takes the rest; locked
     # instants are told, and have no mean.
@@ -106,7 +106,7 @@ TOLD = {
     " | mobility W = 1 passive 1 constraint: link crank-3 may be left out",
     "mobility rssr": "mobility W = 2, 1 without idle ones | idle 1 freedom: coupler: turns about "
     "the line through B and C",
-    "mobility stretched-bars": "gives back: the scheme shakes",
+    "mobility stretched-bars": "of first order alone: the scheme shakes",
     # Verdicts: as shipped is shown and does not count, but for where it is named.
     ONCE: "profile tuned (gated) | profile as-shipped (shown, not gated) | OUT fourbar-lecture-1"
     " | WITHIN TOLERANCE: 1 cell (1 scene x 1 engine) | , mujoco 4.",
