@@ -155,8 +155,8 @@ LARGE: dict[str, tuple[Made, str]] = {
 }  # fmt: skip
 SPECIAL: dict[str, tuple[Made, str]] = {
     "30 GB": (sparse, "30000000000 bytes; at most .* are read"),
-    "a pipe": (os.mkfifo, "a pipe, no plain file"),
-    "endless": (partial(os.symlink, "/dev/zero"), "a device, no plain file"),
+    "a pipe": (os.mkfifo, "a pipe, not a plain file"),
+    "endless": (partial(os.symlink, "/dev/zero"), "a device, not a plain file"),
     "a folder": (os.mkdir, "a folder"),
     "a link to nothing": (partial(os.symlink, "nothing"), "not there"),
     "nothing": (Path.exists, "not there"),  # which makes none

@@ -54,7 +54,7 @@ def test_a_law_of_another_kind_is_refused() -> None:
         offset_rad = 0.0
         at = turned = lambda self, _: self
 
-    with pytest.raises(CrankcheckError, match="law Own: a scene file has no words for it"):
+    with pytest.raises(CrankcheckError, match="law Own: a scene file can not state it"):
         scene_text(driven_by(Own()))
 
 

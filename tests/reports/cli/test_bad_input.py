@@ -65,9 +65,9 @@ def many(form: str, count: int) -> str:
 
 SPECIAL: dict[str, tuple[Callable[[Path], object], str]] = {
     "3 GB": (sparse, "3000000000 bytes; at most 200000 are read"),
-    "endless": (partial(os.symlink, "/dev/zero"), "a device, no plain file"),
-    "pipe": (os.mkfifo, "a pipe, no plain file"),
-    "socket": (bound, "a socket, no plain file"),
+    "endless": (partial(os.symlink, "/dev/zero"), "a device, not a plain file"),
+    "pipe": (os.mkfifo, "a pipe, not a plain file"),
+    "socket": (bound, "a socket, not a plain file"),
     "folder": (os.mkdir, "a folder; name a plain text file of at most 200000 bytes"),
     "link to nothing": (partial(os.symlink, "nothing"), "neither a shipped scene|not there"),
 }

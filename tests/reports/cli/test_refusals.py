@@ -44,7 +44,7 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     "verify fourbar-swing --dt 1": ["10 steps of fourbar-swing", "80 at least"],
     "verify --free slider-crank-self-locking": ["friction that grows", "remove it"],
     "verify slider-crank-self-locking --forces":
-        "mujoco is given no such friction (friction.piston)",
+        "mujoco gets no such friction (friction.piston)",
     "sweep fourbar-lecture-1 --dt 1e-3 -o out": "--dt: this option is for free motion",
     "sweep fourbar-swing -o out": "a scene of free motion, whose driver follows no law",
     "sweep --free --dt 1;2 -o out": "--dt '1;2': write numbers with commas",

@@ -56,7 +56,7 @@ def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(tmp_path: Pat
     speed = math.sqrt(100.0 + 2 * 5.0 * math.pi / 2)
     assert f"crank 180.00000 3.1415927 {speed:.8g} 5.0000000" in flat(output)
     wrong = crank("solve", path, "--at-deg", "80")
-    refused(wrong, "never comes there; it comes to the same driver angle at 440 deg")
+    refused(wrong, "never gets there; it reaches the same driver angle at 440 deg")
 
 
 def test_without_a_whole_cycle_there_is_no_stroke(tmp_path: Path) -> None:

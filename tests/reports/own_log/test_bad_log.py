@@ -68,7 +68,7 @@ MAPS: dict[str, str] = {
     "[colums]\na = 1": "colums: unknown key; ",
     '[file]\ndecimal = "!"': "file.decimal: found '!'",
     "[[channel": "not valid TOML",
-    "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in READ): "no column belongs to scene",
+    "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in READ): "no column belongs to",
 }
 
 

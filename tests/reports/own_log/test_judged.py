@@ -65,7 +65,7 @@ def test_each_quantity_may_have_a_target_of_its_own_and_needs_one_without_a_step
     assert rules(judged(columns)) == ["CC106"]
     assert rules(judged(columns, {"angle": 1e-3, "velocity": 0.1})) == []
     assert_within(SCENE, {"t": TIME_S, **columns}, target=1e-3, velocity=0.1)
-    with pytest.raises(CrankcheckError, match="no limit for velocity: the step of the log is unknown"):
+    with pytest.raises(CrankcheckError, match="no limit for velocity: the step of the log is"):
         judged(columns, {"angle": 1e-3})
 
 

@@ -106,7 +106,7 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "an equality within the loop": (
         planted(*tied('<joint name="E" joint1="D" joint2="B"/>')),
         "E: a <joint> equality couples coordinates of rocker (hinge D), coupler (hinge B) in the "
-        "loop, of which no closed form is known; take it out",
+        "loop, of which no closed form is known; remove it",
     ),
     "a joint of the loop that an equality holds": (
         planted(*tied('<joint name="E" joint1="D"/>')), "couples coordinates of rocker (hinge D) in"

@@ -233,7 +233,7 @@ SPOILT: dict[str, tuple[Change, str]] = {
     "facts": (spoil("verify.json", "{"), "verify.json: not JSON"),
     "list of facts": (spoil("verify.json", "[]"), "verify.json: no facts"),
     "deep facts": (spoil("verify.json", "[" * 100_000), "verify.json: not JSON"),
-    "facts from a pipe": (piped("verify.json"), "verify.json: a pipe, no plain file; verify again"),
+    "facts from a pipe": (piped("verify.json"), "json: a pipe, not a plain file; verify again"),
     "cells from a pipe": (piped("verify.csv"), "no stored run there"),
     "two kinds": (spoil("manifest.json", "{}"), "holds a sweep .* and a verification"),
     "not text": (lambda f: (f / "verify.csv").write_bytes(b"\xff\xfe\x00") and None, "not a CSV"),

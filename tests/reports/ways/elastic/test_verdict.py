@@ -81,7 +81,7 @@ NO_BEAMS = "are not offered by crankcheck, but in exudyn"
         (
             cell(with_coupler(axial_n=8e4), springs="beam"),
             "unsupported",
-            f"{NO_BEAMS}; it may be given links that do not stretch",
+            f"{NO_BEAMS}; links that do not stretch can be",
         ),
     ],
 )
