@@ -144,11 +144,8 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
                                                                          "more"),
         "spring of two kinds": ('pin = "B"', 'pin = "B", slider = "C"', "springs.turning: give its "
                                                                         "place"),
-        "turning spring in newtons": ("rate_n_m_rad = 0.3", "rate_n_m = 0.3", "springs.turning: "
-                                                                              "rate_n_m does not "
-                                                                              "go with a pin; give "
-                                                                              "rate_n_m_rad and "
-                                                                              "damping_n_m_s"),
+        "turning spring in newtons": ("rate_n_m_rad = 0.3", "rate_n_m = 0.3", "springs.turning: rate_n_m does not belong to a pin; give rate_n_m_rad and "
+            "damping_n_m_s"),
         "spring between a body and itself": ("free_deg = -20.0", 'bodies = ["rod", "rod"]', "springs.turning.bodies: "
                                                                                             "found "
                                                                                             "rod "
@@ -193,19 +190,8 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
                                                                               "have to increase"),
         "fewer steps than values": ("[0.0, 0.25, 0.5]", "[0.0, 0.5]", "loads.switch: found 2 "
                                                                       "places and 3 values"),
-        "friction of the reactions": ("torque_n_m = 0.004", "mu = 0.1, radius_m = 0.01", "friction.A: "
-                                                                                         "friction "
-                                                                                         "by mu "
-                                                                                         "follows "
-                                                                                         "from the "
-                                                                                         "reactions, "
-                                                                                         "and free "
-                                                                                         "motion "
-                                                                                         "is not "
-                                                                                         "worked "
-                                                                                         "out with "
-                                                                                         "it; give "
-                                                                                         "torque_n_m"),
+        "friction of the reactions": ("torque_n_m = 0.004", "mu = 0.1, radius_m = 0.01", "friction.A: friction by mu follows from the reactions, and free motion is not "
+            "computed with it; give torque_n_m"),
         "flywheel without a mass": ("flywheel_kg_m2", "mass_kg = 0.0, "
                                                       "flywheel_kg_m2", "links.crank: "
                                                                                        "flywheel_kg_m2 "

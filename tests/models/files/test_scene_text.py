@@ -126,7 +126,7 @@ REFUSED = [
     *((numbered(branch), said) for branch, said in (
         ("plate = 7", "numbered from 1 to at most 6"),
         ("plate = 5", "has 2 assemblies; give a number from 1 to 2$"),
-        ("leg1 = 1", "no two assemblies; it has plate"),
+        ("leg1 = 1", "separates no assemblies; it has plate"),
     )),
     (
         TRIAD.replace("E = [0.25", "E = [0.01"),

@@ -80,7 +80,7 @@ TOLD = {
     " | at rest: every velocity is 0 | one point, as omega is 0",
     "polygon fourbar-chain --omega 1 --at-deg 0": "v_B0A0"
     " | not drawn: RRR (coupler0, rocker1): both directions"
-    " | not drawn: RRR (coupler1, rocker2): hangs on coupler0",
+    " | not drawn: RRR (coupler1, rocker2): depends on coupler0",
     "graph fourbar-lecture-1 --of rocker --divisions 8": "no. crank deg phi rad omega rad/s exact"
     " epsilon rad/s² exact | 0.5 112.50 4.9897"
     " | in 8 parts; omega off by up to 5.4 %, epsilon off by up to 11 %",

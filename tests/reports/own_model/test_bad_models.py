@@ -118,8 +118,8 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "a base that its loop moves": (
         planted("<worldbody>", SLED, '<body name="rocker" pos="0.3 0 0"',
                 '</body><body name="rocker" pos="0.3 0 0"', "</worldbody>", "</worldbody>"),
-        "it turns against body sled, and not against the ground, which its loop meets too; hold "
-        "that body: take out slide sled; drivable: D",
+        "it turns against body sled, and not against the ground, which its loop meets too; fix "
+        "that body: remove slide sled; drivable: D",
     ),
     "a hinge far round": (
         planted(*rocker('ref="1e12"')),

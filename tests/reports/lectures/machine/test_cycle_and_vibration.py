@@ -133,7 +133,7 @@ def test_a_page_is_written() -> None:
         ("flywheel shaft.toml --delta 2 -o f.csv", "--delta 2: "),
         (
             "flywheel shaft.toml --delta 0.3 --write f.toml",
-            "no flywheel is needed for a coefficient of 0.3: without one more it is 0.2 already",
+            "no flywheel is needed for a coefficient of 0.3: the machine has 0.2",
         ),
         ("cycle shaft.toml -o out.txt", "found '.txt'"),
         ("flywheel shaft.toml --delta 0.1 --write f.csv", "found .csv; use .toml"),
