@@ -135,7 +135,7 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     "mobility --replace": "name a scheme",
     "mobility sarrus --replace": "sarrus: a spatial scheme",
     "stability grashof-exces": ["grashof-exces", "did you mean grashof-excess"],
-    "stability --at 1e-3": ["a value of one case", "name one"],
+    "stability --at 1e-3": ["needs one case", "name one"],
     f"{EXCESS} --at nan": "not a finite number",
     f"{EXCESS} --at -0.5": ["not above 0", "Grashof margin", "0.01 to 1e-6 m"],
     f"{EXCESS} --at 5": ["too far off", "0.01 to 1e-6 m"],

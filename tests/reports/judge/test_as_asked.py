@@ -93,7 +93,7 @@ def test_a_wrong_start_is_named(kind: str, body: str, place: str, share: float, 
         return replace(done, motion=replace(done.motion, **{kind: {**own, body: off}}))
 
     found = said(cell("slider-crank-offset", "pymunk", converge=False), moved)
-    assert f"start: {kind[:-1]} {body} begins {share * size:.2g} {unit} off" in found
+    assert f"start: {kind[:-1]} {body} has an error of {share * size:.2g} {unit}" in found
 
 
 @pytest.mark.parametrize("name", [name for name in FULL if integrates(name)])

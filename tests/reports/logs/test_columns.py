@@ -191,8 +191,8 @@ def test_rows_beyond_the_most_are_refused(tmp_path: Path, monkeypatch: pytest.Mo
     [
         (pd.to_timedelta([0, 1], unit="s"), r"column 't': found durations .*give .* seconds"),
         (pd.to_datetime([0, 1], unit="s"), r"column 't': found dates .*give .* seconds"),
-        ([True, False], "column 't': found True, no number"),
-        ([1j, 2.0], "column 't': found 1j, no number"),
+        ([True, False], "column 't': found True, not a number"),
+        ([1j, 2.0], "column 't': found 1j, not a number"),
         ([1.5, None], "the frame, row 1, column 't': found nan"),
     ],
 )

@@ -37,7 +37,7 @@ OPTIONS: dict[str, str] = {
     JUDGE: "--step.*--target|--target.*--step",
     **{f"{JUDGE} --step {number}": "--step" for number in ("0", "nan", "1e300")},
     f"{JUDGE} --target nan": "'nan' is not a number above 0",
-    f"{JUDGE} --target angel=1e-3": "'angel' is no quantity; .*angle",
+    f"{JUDGE} --target angel=1e-3": "'angel' is not a quantity; .*angle",
     f"{JUDGE} --target 1e-3 --require rockr": "--require 'rockr': neither a q.*rocker",
     f"{JUDGE} --target 1e-3 --write-map nowhere/map.toml": "nowhere",
     "judge nowhere FILE --target 1e-3": "nowhere",

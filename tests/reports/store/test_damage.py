@@ -231,7 +231,7 @@ def test_what_is_no_store_is_refused_untouched(names: str, tmp_path: Path, swept
         (home / name).parent.mkdir(parents=True, exist_ok=True)
         (home / name).write_text('{"name": "my app"}')
     before = sorted(home.rglob("*"))
-    assert "so it is no store of a sweep" in refusal(swept, home)
+    assert "so it is not the store of a sweep" in refusal(swept, home)
     assert sorted(home.rglob("*")) == before
     assert "no store of a sweep there" in refusal(read_store, home)
 

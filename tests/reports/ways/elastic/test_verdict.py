@@ -75,7 +75,7 @@ NO_BEAMS = "are not offered by crankcheck, but in exudyn"
 @pytest.mark.parametrize(
     ("asked", "status", "told"),
     [
-        (cell(segments=8), "diverged", "take 1833 steps a turn, or fewer segments"),
+        (cell(segments=8), "diverged", "use 1833 steps a turn, or fewer segments"),
         (cell(with_coupler(axial_n=6.3e6)), "unsupported", "elastic.coupler stretches"),
         (cell(springs="beam"), "unsupported", f"beams (coupler) in mujoco {NO_BEAMS}"),
         (
