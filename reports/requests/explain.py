@@ -114,7 +114,7 @@ class ExplainRequest:
             answer["limit that binds"] = f"{title}, {taken}: {worst_of.text}"
             answer |= _limit(worst_of.rule)
             turns += [f"{worst_of.rule}: {worst_of.cure}"] * bool(worst_of.cure)
-        return answer | {"what to turn": "\n".join([*turns, *_settings(cell)])}
+        return answer | {"what to change": "\n".join([*turns, *_settings(cell)])}
 
 
 def _limit(name: str) -> dict[str, object]:

@@ -57,8 +57,8 @@ TOLD = {
     " | slider B, moment -0.00639277 N m 234 deg 0",
     # What is let go, or bends.
     "solve fourbar-swing --duration 0.5 --steps 4": "driver crank, released at rest at 0 deg, for "
-    "10 s; groups | 0.5 -194.2583 10.52205 170.5064 0.1350355 0.295723 0 | uncertainty of the angle "
-    "of crank at most | at 0.5 s. Sensitivity 2.61: growth of a small change of the start",
+    "10 s; groups | 0.5 -194.2583 10.52205 170.5064 0.1350355 0.295723 0 | uncertainty of the "
+    "angle of crank at most | at 0.5 s. Sensitivity 2.61: growth of a small change of the start",
     "solve fourbar-elastic --steps-per-turn 4": "EI = 4.725 N m^2, from 77.3704 rad/s on (10.5"
     " times the speed | by 8 polynomials across each, with the shortening of bent links"
     " | 0.2131743 180 0.0005291017 | deflection of its middle 0.00105172 m 125 deg | Starts on the"
