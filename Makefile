@@ -2,9 +2,9 @@
 #
 #   make verify       compare the engines with the reference on all shipped scenes
 #   make test         lint, types and tests
-#   make quick        the tests that reach what differs from main, or FILES="reports/page"
+#   make quick        the tests that reach the difference from main, or FILES="reports/page"
 #   make report       run the shipped study into out/, with its page, figures and summary
-#   make picture      draw the README picture anew after make engines: speed against error of each
+#   make picture      draw the README picture again after make engines: speed against error of each
 #   make hard         hard cases, graded, into out/hard
 #   make engines      install all engines that this system has, compare them in out/engines
 #   make slow         the long checks that `make test` leaves out
@@ -12,7 +12,7 @@
 #   make benchmarks   speed of the reference, of logging and of free motion, as ratios
 #   make oldest       compare and test with the oldest packages that pyproject.toml admits
 #   make release      build wheel and source archive into out/dist, check and install them
-#   make models       write the MJCF files in models/canonical/ anew
+#   make models       write the MJCF files in models/canonical/ again
 #   make format       format the code
 
 PYTHON ?= python3
@@ -26,7 +26,7 @@ PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
 
-# Compiled code is kept: the tests start hundreds of processes, and each would compile all of it anew.
+# Compiled code is kept: the tests start hundreds of processes, and each would compile it again.
 unexport PYTHONDONTWRITEBYTECODE
 
 test: $(VENV)/test browser
@@ -37,12 +37,12 @@ lint: | $(VENV)/test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-# One thread for each of the two processes: with more, those of large products wait for a processor
-# and burn it meanwhile, which took a fifth of the time of what is let go for ten thousand steps.
+# One thread for each of the two processes: more threads of large products wait for a processor, and
+# took a fifth of the time of ten thousand steps of free motion.
 pytest slow: export OPENBLAS_NUM_THREADS := 1
 
-# Stolen work keeps both processes busy to the end, and the tests of a folder, which share what is
-# made for them, mostly in one of them.
+# Stolen work keeps both processes busy to the end, and the tests of a folder, which share fixtures,
+# mostly in one of them.
 pytest: | $(VENV)/test
 	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m "not slow and not long" $(PYTEST)
 
@@ -52,8 +52,8 @@ quick: $(VENV)/test browser
 record: $(VENV)/test browser
 	$(BIN)/python -m tests.recorded.quick record
 
-# The page of `crankcheck report` is tested in a real browser: installed where that can be done
-# without asking (as root on Debian); elsewhere its tests are skipped and say how to install it.
+# The page of `crankcheck report` is tested in a real browser, which is installed if that needs no
+# question (as root on Debian); else its tests are skipped and name the way to install it.
 browser:
 	@command -v chromium >/dev/null || [ "$$(id -u)" != 0 ] || ! command -v apt-get >/dev/null || \
 		{ apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq chromium; } \
@@ -74,7 +74,7 @@ picture: $(VENV)/crankcheck
 hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard
 
-# Four mechanisms, two free motions, and twelve hard cases of all kinds that are over in seconds.
+# Four mechanisms, two free motions, and twelve quick hard cases of all kinds.
 ALL := --engine all --profile tuned --profile as-shipped -o out/engines
 FOUR := fourbar-lecture-1 slider-crank-offset slotted-lever shaper
 HARD := heavy-rocker light-rocker heavy-block massless-coupler short-rod grashof-excess triad-near-limit \
@@ -99,7 +99,7 @@ benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/free.py
 	$(BIN)/python benchmarks/elastic_engines.py --few
 
-# Each lower bound of a dependency as a pin; what the tests need beside that is as always.
+# Each lower bound of a dependency as a pin; other packages of the tests are as always.
 OLDEST := out/oldest/bin
 oldest: $(VENV)/crankcheck
 	rm -rf out/oldest && $(BIN)/python -m venv out/oldest
@@ -112,7 +112,7 @@ oldest: $(VENV)/crankcheck
 	for engine in mujoco pymunk; do $(OLDEST)/crankcheck engines check $$engine || exit; done
 	$(OLDEST)/python -m pytest -q tests/reports/cli/test_each_command.py -W ignore::DeprecationWarning
 
-# Each Python of 3.11 or later that is to be had installs the wheel, also those of pyenv.
+# Each Python of 3.11 or later here installs the wheel, also those of pyenv.
 PYTHONS ?= python3.11 python3.12 python3.13 python3.14
 release: export PIP_CONSTRAINT := constraints.txt
 release: $(VENV)/release
@@ -153,7 +153,7 @@ $(VENV)/test: $(VENV)/crankcheck
 	$(PIP) install --constraint constraints.txt --group test
 	touch $@
 
-# Each by itself: one without a wheel for this system does not keep the others away; `--engine all` names it.
+# One by one: an engine without a wheel for this system does not stop the others; `--engine all` names it.
 $(VENV)/engines: $(VENV)/crankcheck
 	for extra in box2d dart exudyn rapier simbody drake bullet; do \
 		$(PIP) install --constraint constraints.txt --only-binary :all: --no-binary crankcheck \

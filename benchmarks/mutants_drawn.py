@@ -84,8 +84,8 @@ CHANGED = {
     ),
     61: ("say_whole(console, told)", "(console, told)", "(told, console)"),
     62: (
-        "say(console, f\"{document['scene']}: the branch that it is on alone\")",
-        "say(console, f\"{document['scene']}: the branch that it is on alone\")",
+        "say(console, f\"{document['scene']}: only its own branch\")",
+        "say(console, f\"{document['scene']}: only its own branch\")",
         "pass",
     ),
     63: ("if self.folder is not None:", "self.folder is not None", "(self.folder is None)"),

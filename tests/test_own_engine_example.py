@@ -67,7 +67,7 @@ def test_it_is_out_of_tolerance_by_its_own_name_where_faults_are_planted_too() -
     ("line", "words"),
     [
         ("tune fourbar-lecture-1 --target 1e-3 --engine X", "engine penalty: it has no knobs"),
-        ("history X 1.0", "history penalty: it has released versions of mujoco"),
+        ("history X 1.0", "history penalty: only mujoco"),
         ("verify slotted-lever --engine X", "slotted-lever, penalty, tuned: penalty: it has no sl"),
         ("selftest --fault joint-dropped --engine X", "found --engine penalty"),
     ],

@@ -302,8 +302,8 @@ class AssurStep(FollowedStep):
         if chosen.count > 1:
             raise ReachError(
                 f"{scene.name}: {at}, where it starts, two assemblies of the group about "
-                f"{self.key} fall together: it is singular there, and goes on with either; start "
-                "elsewhere"
+                f"{self.key} fall together: it is singular there, and continues with either; "
+                "start elsewhere"
             )
         return chosen
 

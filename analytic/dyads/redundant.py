@@ -126,10 +126,9 @@ class BridgeStep:
             how = f"fits in place only: {away} at {off:.3g} {unit}"
         angle = f"{self.driver} at {math.degrees(chunk.theta[index]):.6g} deg"
         return (
-            f"{self.scene}: redundant link {self.link} {how} with {angle}; "
-            "links that move without it hold all its pins, so it has to fit at every angle, or "
-            f"nothing moves: mend its length (to within {FIT:g} of it: ten digits and more), or "
-            "remove it"
+            f"{self.scene}: redundant link {self.link} {how} with {angle}; links that move "
+            "without it hold all its pins, so it has to fit at every angle, or nothing moves: "
+            f"correct its length (to within {FIT:g} of it: ten digits and more), or remove it"
         )
 
 

@@ -140,9 +140,9 @@ def _needed_sum(scene: Scene, law: Controlled) -> FourierSum:
                     float(waves[0].real), tuple(cosines.tolist()), tuple(sines.tolist()), period_s
                 )
     raise CrankcheckError(
-        f"{scene.name}: the torque that its controller adds to does not go evenly on from turn to "
-        "turn, as loads over time or with jumps make it; leave these out, or look at the motion "
-        "with `crankcheck solve`"
+        f"{scene.name}: the torque below its controller does not continue smoothly from turn to "
+        "turn, because of loads over time or with jumps; leave these out, or compute the "
+        "motion with `crankcheck solve`"
     )
 
 

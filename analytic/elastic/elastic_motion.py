@@ -179,8 +179,8 @@ class DrivenElasticMotion:
             share /= self.assembly.elastic[name][0].length_m
             if share > MOST_BENT and not isinstance(self.by, Segments):
                 raise CrankcheckError(
-                    f"{self.scene.name}: {name} bends by {share:.2g} of its length, which is too "
-                    f"far for a beam of small slopes: up to {MOST_BENT:g} it is one; make it "
+                    f"{self.scene.name}: {name} bends by {share:.2g} of its length, which is "
+                    f"too far for a beam of small slopes (up to {MOST_BENT:g}); make it "
                     "stiffer, or drive slower"
                 )
 
@@ -206,8 +206,8 @@ def check_drive(scene: Scene, until_s: float) -> None:
     for crossing in solve(scene, np.array([0.0, until_s])).crossings:
         raise CrankcheckError(
             f"{scene.name}: with its driver at {math.degrees(crossing.driver_rad):.6g} deg the "
-            f"dyad of {crossing.dyad} goes through a change point, from which links that bend go "
-            "on in either branch; change a length"
+            f"dyad of {crossing.dyad} goes through a change point, from which links that bend "
+            "continue in either branch; change a length"
         )
     law = scene.driver.law
     for kink in law.kinks_s:
@@ -216,7 +216,7 @@ def check_drive(scene: Scene, until_s: float) -> None:
         if kink < until_s and abs(omega[1] - omega[0]) > JUMP * law.peak_speed_rad_s:
             raise CrankcheckError(
                 f"{scene.name}: at {kink:g} s the driver's speed jumps from {omega[0]:g} to "
-                f"{omega[1]:g} rad/s, which is a blow to elastic links; give it a rise_s above 0"
+                f"{omega[1]:g} rad/s, an impact on elastic links; give it a rise_s above 0"
             )
 
 

@@ -137,8 +137,8 @@ class _Going:
         if self.next_s < shortest_s or self.made > MOST_WINDOWS:
             raise CrankcheckError(
                 f"{self.form.dynamics.assembly.scene.name}: at {now_s:g} s the motion of its "
-                "elastic links can not be followed on; take a shorter time, or give them fewer "
-                "shapes"
+                "elastic links can not be followed further; take a shorter time, or give them "
+                "fewer shapes"
             )
 
     def _end(self, window: FreeWindow) -> None:

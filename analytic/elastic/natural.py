@@ -80,7 +80,7 @@ MOST = 30.0
 """Sensitivity from which on no motion is shown: an error of one percent in a modulus changes it by
 a third."""
 MODES = 20
-"""Number of modes of a link among which the resonating one is looked for."""
+"""Number of modes of a link among which the resonating one is searched."""
 
 
 @dataclass(frozen=True)

@@ -155,8 +155,8 @@ def _refuse_other(form: ReducedForm, found: PeriodicMotion, linear: PeriodicMoti
     far = np.abs(found.at(linear.time_s)[0] - linear.z).max(initial=0.0)
     if far > FAR * np.abs(found.z).max(initial=0.0):
         raise CrankcheckError(
-            f"{form.assembly.scene.name}: the periodic motion that was found of its elastic links "
-            "is far from that of small deflections: it is another of several, or they bend too "
+            f"{form.assembly.scene.name}: the periodic motion found for its elastic links is "
+            "far from that of small deflections: it is another of several, or they bend too "
             f"far for a beam: {CURE}"
         )
 

@@ -67,8 +67,8 @@ class ReducedForm:
     def __init__(self, assembly: Assembly, forces: GeneralisedForces, law: Law) -> None:
         if isinstance(law, Controlled):
             raise CrankcheckError(
-                f"{assembly.scene.name}: its driver is controlled, and gives way to elastic links; "
-                'solve it by analytic.elastic.control, or take law = "constant"'
+                f"{assembly.scene.name}: its driver is controlled, and gives way to elastic "
+                'links; solve it by analytic.elastic.control, or use law = "constant"'
             )
         self.assembly, self.forces, self.law = assembly, forces, law
         self._driver = assembly.at[assembly.scene.driver.link] + 2

@@ -52,8 +52,8 @@ def _check_whole(scene: Scene, motion: Motion, *, bound: bool) -> None:
             )
     if bound and motion.bound is None:
         raise CrankcheckError(
-            f"{scene.name}: the motion carries no bounds, so its forces have none; solve it with "
-            "bound=True, or ask for forces with bound=False"
+            f"{scene.name}: the motion carries no bounds, so its forces have none; solve it "
+            "with bound=True, or request forces with bound=False"
         )
 
 

@@ -157,7 +157,8 @@ def _check_friction(scene: Scene, structure: Structure) -> None:
         raise CrankcheckError(
             f"{scene.name}: friction.{scene.coulomb_joints[0]}: Coulomb's friction follows from "
             f"the reactions, and how redundant links ({structure.spare}) share them is open, so "
-            "it can not be worked out; give torque_n_m or force_n, or leave the redundant links out"
+            "it can not be computed; give torque_n_m or force_n, or leave the redundant links "
+            "out"
         )
 
 
@@ -184,9 +185,10 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
 def _locked(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
     place = told(scene, sample(chunk.theta, index))
     return (
-        f"{scene.name}: {scene.driver.joint} at {place} (t = {time_s[index]:.6g} s) locks itself: "
-        f"friction in {few(scene.coulomb_joints, 6)} grows by more than the torque against it, so "
-        "no finite torque keeps it moving; leave that instant out, lessen mu, or drive another link"
+        f"{scene.name}: {scene.driver.joint} at {place} (t = {time_s[index]:.6g} s) locks "
+        f"itself: friction in {few(scene.coulomb_joints, 6)} grows by more than the torque "
+        "against it, so no finite torque keeps it moving; leave that instant out, reduce mu, "
+        "or drive another link"
     )
 
 

@@ -130,7 +130,7 @@ class LimitPosition:
 
     def _unclear(self) -> CrankcheckError:
         return CrankcheckError(
-            f"{self.scene.name}: {self.scene.driver.link} comes to its limit at "
+            f"{self.scene.name}: {self.scene.driver.link} reaches its limit at "
             f"{math.degrees(self.driver_rad):.6g} deg, where the smooth way of the dyad of "
             f"{self.dyad} into its other assembly cannot be distinguished from others within "
             "rounding; another singular position is too near: change a length"

@@ -164,8 +164,8 @@ def check_start(scene: Scene, machine: Machine, u: float) -> None:
         if law.speed_rad_s == 0.0 and phase.min() <= 10.0 * AT_START:
             raise CrankcheckError(
                 f"{scene.name}: it starts at rest in the change point of {key}, at "
-                f"{scene.driver.link} {turned:.6g} deg, where it may go on in two ways; give it a "
-                "speed, or another angle"
+                f"{scene.driver.link} {turned:.6g} deg, where it may continue in two ways; give "
+                "it a speed, or another angle"
             )
     place = np.array([u])
     inertia = float(machine.inertia(place)[0][0])

@@ -110,9 +110,8 @@ class GearStep(PeriodicStep):
         back = math.lcm(*(gain.denominator for gain in gains)) * base
         if back > (MOST_TURNS + 0.5) * math.tau:
             raise CrankcheckError(
-                f"{self.scene.name}: the links on its gears come back after "
-                f"{back / math.tau:.0f} turns of the driver; a linkage that hangs on gears is "
-                f"solved where it comes back after at most {MOST_TURNS}: choose numbers of teeth "
-                "with a simpler ratio"
+                f"{self.scene.name}: the links on its gears return after {back / math.tau:.0f} "
+                "turns of the driver; linkages on gears are solved if they return after at "
+                f"most {MOST_TURNS}: choose numbers of teeth with a simpler ratio"
             )
         return back

@@ -68,8 +68,8 @@ class Cycle:
             return Cycle(scene, math.tau, Oscillating(law.centre_rad, abs(law.amplitude_rad), 1.0))
         if scene.driver.slider is not None:
             raise CrankcheckError(
-                f"{scene.name}: {scene.driver.joint} comes back by no law but an oscillating one, "
-                "and goes through no cycle"
+                f"{scene.name}: {scene.driver.joint} returns only by an oscillating law, and "
+                "has no cycle"
             )
         return Cycle(scene, repeats_after(scene), None)
 

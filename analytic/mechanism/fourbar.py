@@ -82,7 +82,7 @@ class FourBar:
         driver = links[scene.driver.link]
         if crank_pin not in driver or rocker_pivot not in scene.ground:
             raise StructureError(
-                f"{scene.name}: not a four-bar; {group.first} and {group.second} hang between "
+                f"{scene.name}: not a four-bar; {group.first} and {group.second} lie between "
                 "pins of one body"
             )
         lengths = (

@@ -105,7 +105,7 @@ class Outset:
         if missing:
             unknown = [body for body in missing if body not in placing.angles] or missing
             raise CrankcheckError(
-                f"{self.assembly.scene.name}: where {few(unknown, 8)} start is not named; give "
+                f"{self.assembly.scene.name}: the start of {few(unknown, 8)} is not named; give "
                 "their angles in start.angles_deg, to a degree"
             )
         q = np.zeros(self.assembly.size)
@@ -154,9 +154,8 @@ class Outset:
                 counting.append(named.words)
         if whole and rank < frames:
             raise CrankcheckError(
-                f"{self.assembly.scene.name}: {frames - rank} more of the angles of "
-                f"links have to be named in start.angles_deg; {few(counting, 8)} say where the "
-                "others are"
+                f"{self.assembly.scene.name}: {frames - rank} more angles of links are needed "
+                f"in start.angles_deg; {few(counting, 8)} determine the others"
             )
         q = self._closed(rough, counting)
         for named in self._named(self.assembly.at_rest(q[None]), rates=False):

@@ -109,7 +109,7 @@ def _check_start(dynamics: Dynamics, q: Array, directions: Array) -> None:
     """Refuse a start in a change point, and a freedom without mass. Raises CrankcheckError."""
     assembly, count = dynamics.assembly, len(directions)
     if count == 0:
-        raise CrankcheckError(f"{assembly.scene.name}: nothing of it can move; it has no freedom")
+        raise CrankcheckError(f"{assembly.scene.name}: nothing can move; it has no freedom")
     mass = assembly.mass(q[None])[0]
     masses = np.linalg.eigvalsh(directions @ mass @ directions.T)
     # In the units of coordinates: small mechanisms have small moments of inertia.
@@ -121,7 +121,7 @@ def _check_start(dynamics: Dynamics, q: Array, directions: Array) -> None:
         )
     if dynamics.redundant and _freer(dynamics, q, directions):
         raise CrankcheckError(
-            f"{assembly.scene.name}: it starts in a change point, where it is free to go on in "
+            f"{assembly.scene.name}: it starts in a change point, where it can continue in "
             "several ways, and its accelerations are not determined; start beside it"
         )
 

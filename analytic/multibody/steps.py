@@ -264,10 +264,10 @@ class Pace:
         over = [load for load in scene.loads.values() if load.over != "time"]
         named = few([f"loads.{load.name} over {load.over}" for load in over], 6) or "what acts"
         raise CrankcheckError(
-            f"{scene.name}: it runs away: at about {lost_s:.4g} s its speed goes to infinity, and "
-            f"is over {MANY:g} times what it was up to {SHARE * lost_s:.3g} s; {named} drives it "
-            f"ever faster: give a time of {SHARE * lost_s:.2g} s or less, or a load that does not "
-            "grow faster than the speed or the way that it goes by"
+            f"{scene.name}: it runs away: at about {lost_s:.4g} s its speed goes to infinity, "
+            f"and is over {MANY:g} times what it was up to {SHARE * lost_s:.3g} s; {named} "
+            f"drives it faster and faster: give a time of {SHARE * lost_s:.2g} s or less, or a "
+            "load that grows no faster than its speed or path"
         )
 
 

@@ -110,8 +110,8 @@ def analyse(scene: Scene) -> Structure:
     else:
         if scene.gears or scene.cams:
             raise StructureError(
-                f"{scene.name}: {scene.driver.joint} drives two moving bodies, which does not go "
-                "with gears and cams here; drive a body against the ground"
+                f"{scene.name}: {scene.driver.joint} drives two moving bodies, which can not be "
+                "combined with gears and cams; drive a body against the ground"
             )
         units = compound.units(bodies)
         order, left = decompose(units, frozenset({GROUND}), compound.pairs(pins, prismatics))
@@ -156,8 +156,8 @@ def _check_driver(scene: Scene, structure: Structure) -> None:
     others = [name for name in joined if name != (driver.slider or scene.driver_pivot)]
     if others:
         raise StructureError(
-            f"{scene.name}: {driver.joint} cannot move: {' and '.join(sorted(own))} are joined at "
-            f"{', '.join(others)} too; take one of these joints out, or drive another"
+            f"{scene.name}: {driver.joint} cannot move: {' and '.join(sorted(own))} are joined "
+            f"at {', '.join(others)} too; remove one of these joints, or drive another"
         )
 
 
@@ -166,8 +166,9 @@ def _check_held(scene: Scene, groups: tuple[Group, ...]) -> None:
     for group in groups:
         if group.kind[0] == group.kind[2] == "R" and group.outer1 == group.outer2:
             raise StructureError(
-                f"{scene.name}: {group.first} and {group.second} both hang on pin {group.outer1}, "
-                "and turn about it whatever the driver does; pin one of them at another point"
+                f"{scene.name}: {group.first} and {group.second} are both pinned at "
+                f"{group.outer1} alone, and turn about it whatever the driver does; pin one of "
+                "them at another point"
             )
 
 
@@ -178,9 +179,7 @@ def _check_branches(scene: Scene, structure: Structure) -> None:
     for key in scene.branch:
         if key not in choices:
             have = f"it has {', '.join(choices)}" if choices else "this scene has none"
-            raise StructureError(
-                f"{scene.name}: branch.{key} chooses between no two assemblies; {have}"
-            )
+            raise StructureError(f"{scene.name}: branch.{key} separates no assemblies; {have}")
 
 
 def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | None = None) -> None:
@@ -188,15 +187,15 @@ def refuse_other_than_cranked(scene: Scene, what: str, structure: Structure | No
     does not cover them. Raises CrankcheckError."""
     if not scene.driver.is_crank:
         raise CrankcheckError(
-            f"{scene.name}: {what} takes a driver that is a link pinned to the ground, and this "
+            f"{scene.name}: {what} needs a driver that is a link pinned to the ground, and this "
             f"scene's is {scene.driver.joint}"
         )
     refuse_higher_pairs(scene, what)
     triads = ", ".join(triad.central for triad in structure.triads) if structure else ""
     if triads:
         raise CrankcheckError(
-            f"{scene.name}: {what} takes class II groups alone, and this scene has a group of "
-            f"class III about {triads}"
+            f"{scene.name}: {what} needs class II groups, and this scene has a group of class "
+            f"III about {triads}"
         )
 
 
@@ -213,7 +212,7 @@ def refuse_higher_pairs(scene: Scene, what: str) -> None:
     """Refuse gears and cams, as ``what`` is worked out without them. Raises CrankcheckError."""
     if higher := [*scene.gears, *scene.cams]:
         raise CrankcheckError(
-            f"{scene.name}: {what} is not worked out with gears or cams ({', '.join(higher)})"
+            f"{scene.name}: {what} is not computed with gears or cams ({', '.join(higher)})"
         )
 
 
@@ -252,7 +251,9 @@ def unsolved(structure: Structure, left: list[str]) -> str:
                 f"{3 * size // 2} pairs ({rest.kind(group, outer)}), which is not solved here; "
                 f"{SOLVED}"
             )
-    return f"{few(left, SHOWN)} do not hang on the driver and the ground by dyads; check their pins"
+    return (
+        f"{few(left, SHOWN)} are not joined to the driver and the ground by dyads; check their pins"
+    )
 
 
 @dataclass(frozen=True)

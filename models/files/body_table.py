@@ -72,7 +72,7 @@ class LinkTable(schema.Table):
     def faults_of_points(self, name: str) -> Iterator[str]:
         """Yield faults of points that are given twice, or are too few to spread a mass over."""
         if self.bar is not None and set(self.bar) & set(self.points):
-            yield f"links.{name}.points: the ends of the bar stand there already"
+            yield f"links.{name}.points: the bar already gives its ends"
         given = (self.mass_kg, self.centre_m, self.inertia_kg_m2)
         if len(self.every_point) < 2 and None in given:
             yield (

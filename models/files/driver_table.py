@@ -228,7 +228,7 @@ def _law_table(law: Law, *, slides: bool) -> Mapping[str, object]:
     kind, known = next((each for each in LAWS.items() if type(law) is each[1]), ("", None))
     if known is None:
         raise CrankcheckError(
-            f"law {type(law).__name__}: a scene file has no words for it; take another"
+            f"law {type(law).__name__}: a scene file can not state it; use another"
         )
     if slides and known is Released:
         raise CrankcheckError("free motion starts at a link: a scene file has no free slider")

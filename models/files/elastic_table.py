@@ -86,7 +86,7 @@ class ElasticTable(schema.Table):
             raise ValueError(f"found two sections; give one: {SECTION}")
         if self.modulus_pa is not None and (self.flexural_n_m2 or self.axial_n):
             raise ValueError(
-                "modulus_pa with a section says flexural_n_m2 and axial_n too; give one of them"
+                "modulus_pa with a section gives flexural_n_m2 and axial_n too; give one of them"
             )
         if self.density_kg_m3 is not None and self.area is None:
             raise ValueError(f"density_kg_m3 goes with a section: {SECTION}")
@@ -149,14 +149,14 @@ def faults_of_beams(scene: Scene) -> Iterator[str]:
             yield f"elastic.{name}: the link has no mass; give it mass_kg, or density_kg_m3 here"
         elif off or abs(link.inertia_kg_m2 - rod) > SAME * rod:
             yield (
-                f"elastic.{name}: an elastic link is a uniform slender beam from {line.pins[0]} to "
-                f"{line.pins[1]}, of {rod:.6g} kg m^2 about its middle; leave centre_m, "
-                "inertia_kg_m2 and flywheel_kg_m2 out, and points further out than its pins"
+                f"elastic.{name}: an elastic link is a uniform slender beam from {line.pins[0]} "
+                f"to {line.pins[1]}, of {rod:.6g} kg m^2 about its middle; leave centre_m, "
+                "inertia_kg_m2 and flywheel_kg_m2 out, and points beyond its pins"
             )
         if own.height_m is not None and own.bends and line.length_m < SLENDER * own.height_m:
             yield (
-                f"elastic.{name}: it is {line.length_m / own.height_m:.3g} heights of its section "
-                f"long; from {SLENDER:g} on a beam bends as it does here, without shear"
+                f"elastic.{name}: its length is {line.length_m / own.height_m:.3g} heights of "
+                f"its section; this beam, without shear, needs {SLENDER:g} or more"
             )
         first = own.bending_rad_s if own.bends else own.axial_rad_s
         critical_s = 2.0 / first(line.length_m, line.density_kg_m) if link.mass_kg else math.inf
@@ -170,18 +170,18 @@ def faults_of_beams(scene: Scene) -> Iterator[str]:
     yield from _faults_of_loads(scene)
     if scene.elastic and scene.friction:
         yield (
-            f"friction.{next(iter(scene.friction))}: friction and elastic links do not go together "
-            "here; leave one of them out"
+            f"friction.{next(iter(scene.friction))}: friction and elastic links can not be "
+            "combined; leave one of them out"
         )
     if scene.start.shape == "periodic" and not isinstance(
         scene.driver.law, ConstantSpeed | Oscillating
     ):
         yield (
-            'start.shape: found "periodic"; that goes with a driver of constant speed, or one that '
-            'oscillates; use "quasi-static" or "straight"'
+            'start.shape: found "periodic"; that needs a driver of constant speed, or an '
+            'oscillating one; use "quasi-static" or "straight"'
         )
     if scene.start.shape and not scene.elastic:
-        yield "start.shape: it goes with [elastic.LINK]; no link of the scene is elastic"
+        yield "start.shape: it needs [elastic.LINK]; no link of the scene is elastic"
 
 
 def _faults_of_loads(scene: Scene) -> Iterator[str]:
@@ -191,12 +191,12 @@ def _faults_of_loads(scene: Scene) -> Iterator[str]:
             continue
         if load.point is None:
             yield (
-                f"loads.{name}: it turns {load.body}, which is elastic: a torque bends it by where "
-                "it acts; put it on a rigid link, or a force at a point"
+                f"loads.{name}: a torque on {load.body}, which is elastic, bends it by its "
+                "place; put it on a rigid link, or give a force at a point"
             )
         elif load.over == "omega":
             yield (
-                f"loads.{name}: it goes over the angular velocity of {load.body}, which is "
+                f"loads.{name}: it depends on the angular velocity of {load.body}, which is "
                 "elastic and has many; put it on a rigid link"
             )
 
@@ -221,8 +221,8 @@ def faults_of_elastic(elastic: schema.RawTables, names: schema.NamesInTables) ->
         ]
         if guided:
             yield (
-                f"{key}: slider {guided[0]} holds it by a moment, which an elastic link is not "
-                "given here; only links between two pins are"
+                f"{key}: slider {guided[0]} holds it by a moment; only links between two pins "
+                "can be elastic"
             )
         others = (own for link, own in names.points.items() if link != name)
         pinned = names.ground.union(names.blocks.values(), *others)
@@ -287,13 +287,13 @@ def faults_of_free_motion(scene: Scene) -> Iterator[str]:
         )
     if not isinstance(law, Released):
         if replace(scene.start, shape=None):
-            yield 'start: it goes with law = "free"; a driven mechanism starts as its law has it'
+            yield 'start: only for law = "free"; a driven mechanism starts by its law'
         return
     yield from _of_driver(scene, law)
     for joint in scene.coulomb_joints:
         yield (
-            f"friction.{joint}: friction by mu follows from the reactions, and free motion is not "
-            "worked out with it; give torque_n_m of a pin, or force_n of a slider"
+            f"friction.{joint}: friction by mu follows from the reactions, and free motion is "
+            "not computed with it; give torque_n_m of a pin, or force_n of a slider"
         )
     links, blocks = scene.links.values(), scene.sliders.values()
     if not any(link.mass_kg > 0.0 for link in links) and not any(b.mass_kg > 0.0 for b in blocks):

@@ -13,10 +13,10 @@ MOST_TEXT = 200_000
 """Largest size of a file that a user writes [byte]: a thousand links take about half of it."""
 _KINDS = {
     stat.S_IFDIR: "a folder",
-    stat.S_IFIFO: "a pipe, no plain file",
-    stat.S_IFCHR: "a device, no plain file",
-    stat.S_IFBLK: "a device, no plain file",
-    stat.S_IFSOCK: "a socket, no plain file",
+    stat.S_IFIFO: "a pipe, not a plain file",
+    stat.S_IFCHR: "a device, not a plain file",
+    stat.S_IFBLK: "a device, not a plain file",
+    stat.S_IFSOCK: "a socket, not a plain file",
 }
 # A file that has become a pipe since the check is opened without waiting for its other end.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -75,7 +75,7 @@ that grow with the square of the parts, and all checks of nested values grow wit
 MOST_KEYS = 20_000
 """Largest number of keys; each part of a key and of a table's header takes a key's memory."""
 MOST_VALUES = 40_000
-"""Largest number of values: each fault takes a kilobyte, and all are looked for."""
+"""Largest number of values: each fault takes a kilobyte, and all are found."""
 BITS = 64
 """Bits of a whole number in TOML; one of very many digits can be neither read nor shown."""
 

@@ -74,7 +74,9 @@ class LoadTable(schema.Table):
                 if getattr(self, key) is not None:
                     raise ValueError(f"{key} belongs to a force; a torque has none")
         elif self.link is not None and self.point is None:
-            raise ValueError(f"a force on link {self.link} needs the point of it that it acts at")
+            raise ValueError(
+                f"a force on link {self.link} needs the point of the link at which it acts"
+            )
         elif self.block is not None and self.point is not None:
             raise ValueError("a force on a block acts at its point; leave point out")
         return self
@@ -316,7 +318,7 @@ def _law_table(load: Load, key: str) -> dict[str, object]:
             law = {"law": "table", "over": load.over, "interpolation": interpolation}
             return {**law, **rows, **own}
     kind = type(load.characteristic).__name__
-    raise CrankcheckError(f"load {load.name}: a scene file has no words for a {kind}")
+    raise CrankcheckError(f"load {load.name}: a scene file can not state a {kind}")
 
 
 def faults_of_loads(loads: schema.RawTables, names: schema.NamesInTables) -> Iterator[str]:

@@ -42,7 +42,7 @@ class SpringTable(schema.Table):
         wrong += [other_free] * (lengths[other_free] is not None)
         if wrong:
             where = "a pin" if self.pin is not None else "points, or a slider"
-            raise ValueError(f"{wrong[0]} does not go with {where}; give {' and '.join(own)}")
+            raise ValueError(f"{wrong[0]} does not belong to {where}; give {' and '.join(own)}")
         if not any(own.values()):
             raise ValueError(f"a spring needs a rate or a damping above 0: {' or '.join(own)}")
         if self.bodies is not None and self.pin is None:
@@ -102,8 +102,8 @@ def faults_of_springs(springs: schema.RawTables, names: schema.NamesInTables) ->
         for body, own in {GROUND: names.ground, **names.points}.items():
             if len(set(both)) == 2 and own.issuperset(both):
                 yield (
-                    f"{key}.points: {' and '.join(both)} are points of {cut(body)}, which lie as "
-                    "far apart as ever; name points of two bodies"
+                    f"{key}.points: {' and '.join(both)} are points of {cut(body)}, at a "
+                    "constant distance; name points of two bodies"
                 )
         slider = table.get("slider")
         if isinstance(slider, str) and slider not in names.sliders:
@@ -176,14 +176,14 @@ def faults_of_friction(friction: schema.RawTables, names: schema.NamesInTables) 
             for what in ("radius_m", "torque_n_m"):
                 if what in table:
                     yield (
-                        f"{key}.{what}: belongs to a pin, and {cut(joint)} is a slider; leave it "
-                        "out, or, where the pin of its block is meant, give the slider a name "
+                        f"{key}.{what}: belongs to a pin, and {cut(joint)} is a slider; leave "
+                        "it out, or, if you mean the pin of its block, give the slider a name "
                         "other than its point's"
                     )
         elif counts[joint] > 2:
             yield (
-                f"{key}: {counts[joint]} bodies meet at {cut(joint)}, and which of them rub on "
-                "which is open; give each two of them a pin of their own"
+                f"{key}: {counts[joint]} bodies meet at {cut(joint)}, and it is open which of "
+                "them rub; give each two of them a pin of their own"
             )
         elif joint in pins:
             if "force_n" in table:

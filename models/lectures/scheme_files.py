@@ -62,10 +62,10 @@ class JointTable(Table):
         needs = NEEDS[self.kind]
         given = set(self.model_fields_set) - {"between", "kind"}
         if missing := [key for key in needs if key not in given]:
-            raise ValueError(f"{', '.join(missing)}: missing; a {self.kind} joint is given by it")
+            raise ValueError(f"{', '.join(missing)}: missing; a {self.kind} joint needs it")
         if strange := sorted(given - {*needs, *MAY_HAVE.get(self.kind, ())}):
             raise ValueError(
-                f"{strange[0]}: not of a {self.kind} joint, which is given by {', '.join(needs)}"
+                f"{strange[0]}: not for a {self.kind} joint, which needs {', '.join(needs)}"
             )
         if self.pressure_deg is not None and not 5.0 <= self.pressure_deg <= 45.0:
             raise ValueError(f"pressure_deg: found {self.pressure_deg:g}; use 5 to 45 (mostly 20)")
@@ -120,7 +120,7 @@ class SchemeTable(Table):
     @model_validator(mode="after")
     def _joints_are_of_its_space(self) -> SchemeTable:
         if len(set(self.links)) < len(self.links):
-            raise ValueError("links: a name stands there twice; each link has its own")
+            raise ValueError("links: a name is given twice; each link has its own")
         if "ground" in self.links:
             raise ValueError("links: ground is always there; list the moving links")
         kinds = FREEDOMS[self.space]

@@ -74,8 +74,8 @@ def _check_driver(scene: Scene) -> None:
     """Refuse a controlled driver, which yields: the model prescribes the motion at any torque."""
     if isinstance(scene.driver.law, Controlled):
         raise EngineError(
-            f"{scene.name}: its driver is controlled, and this model would hold it to its speed "
-            'without giving way; take law = "constant"'
+            f"{scene.name}: its driver is controlled, and this model would keep its speed "
+            'exactly; use law = "constant"'
         )
 
 

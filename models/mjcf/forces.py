@@ -262,7 +262,8 @@ def planned(
     where = ", ".join(at_closures)
     raise EngineError(
         f"close = {where}: a pin that closes a loop of {scene.name} has no friction here, and "
-        f"friction.{at_closures[0]} asks for it; leave a pin of that loop without, and close there"
+        f"friction.{at_closures[0]} requires it; leave a pin of that loop without friction, and "
+        "close there"
     )
 
 
@@ -287,9 +288,9 @@ def friction_of(scene: Scene, limb: Limb, freedom: Freedom, writing: Writing) ->
             continue
         if not isinstance(one, ConstantFriction):
             raise EngineError(
-                f"friction.{name}: a joint of MuJoCo has constant friction alone, not one that "
-                "grows with its reaction; give torque_n_m or force_n in place of mu, or use the "
-                "reference alone"
+                f"friction.{name}: a joint of MuJoCo has only constant friction, none that "
+                "grows with its reaction; give torque_n_m or force_n in place of mu, or use "
+                "the reference alone"
             )
         row: AttributeRow = {"frictionloss": one.size}
         for key, value in (writing.rubbing or writing.connect).items():

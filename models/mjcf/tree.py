@@ -243,7 +243,9 @@ def _limbs(
     limbs = tuple(grown(GROUND))
     loose = [body for body in joints.bodies(scene) if body not in placed]
     if loose:
-        raise EngineError(f"{scene.name}: {', '.join(loose)} hangs on nothing; pin it to a link")
+        raise EngineError(
+            f"{scene.name}: {', '.join(loose)} is pinned to nothing; pin it to a link"
+        )
     return limbs
 
 

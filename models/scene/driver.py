@@ -274,12 +274,12 @@ def _accelerating(
     comes = [w for w, time_s in times.items() if square >= rounded and time_s >= 0.0]
     down = [w for w in comes if w < 0.0]
     if not comes and slides:
-        raise ValueError(f"never comes there from {law.start_rad:g} m on")
+        raise ValueError(f"never gets there from {law.start_rad:g} m on")
     if not comes:
         way = math.copysign(math.tau, alpha)
         same = theta + way * math.ceil(-turned / way)
         raise ValueError(
-            f"never comes there; it comes to the same driver angle at {math.degrees(same):.6g} deg"
+            f"never gets there; it reaches the same driver angle at {math.degrees(same):.6g} deg"
         )
     if clockwise and not down:
         raise ValueError("does not turn clockwise there; leave out --clockwise")

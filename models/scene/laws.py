@@ -88,7 +88,7 @@ class _ToSpeed(Law):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not self.travel_rad > 0.0:
-            raise ValueError(f"the way of a run is {self.travel_rad:g}: give one above 0")
+            raise ValueError(f"the travel of a run is {self.travel_rad:g}: give one above 0")
 
     @property
     def period_s(self) -> float:

@@ -138,17 +138,17 @@ def _refuse_frame(demand: Demand) -> None:
         longest = demand.period_s * MOST_SUBSTEPS / LEAST_STEPS_PER_TURN
         raise CrankcheckError(
             f"--dt {demand.frame_s:g}: {turn} takes {demand.period_s:.4g} s, and needs at least "
-            f"{LEAST_STEPS_PER_TURN} steps: too long a frame, even in {MOST_SUBSTEPS} sub-steps; "
-            f"give one of {longest:.3g} s at most"
+            f"{LEAST_STEPS_PER_TURN} steps: the frame is too long, even in {MOST_SUBSTEPS} "
+            f"sub-steps; give at most {longest:.3g} s"
         )
     frames = demand.turns * per_turn
     turns = MOST_SEARCHED / (2.0 * per_turn * demand.least)
     if not demand.turns <= turns:
-        fewer = f"take --turns {turns:.3g}, or " if turns >= 1.0 else ""
+        fewer = f"use --turns {turns:.3g}, or " if turns >= 1.0 else ""
         raise CrankcheckError(
             f"--dt {demand.frame_s:g} --turns {demand.turns:g}: {frames:.6g} frames, "
-            f"{per_turn:.4g} in {turn}; at most {MOST_SEARCHED // 2} steps are run: {fewer}ask "
-            "for a longer frame or a faster crank, as a slower one has the smaller errors"
+            f"{per_turn:.4g} in {turn}; at most {MOST_SEARCHED // 2} steps are run: {fewer}give "
+            "a longer frame or a faster crank: a slower one has smaller errors"
         )
 
 

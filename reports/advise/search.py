@@ -28,7 +28,7 @@ WORDS = {
     "crashed": "crashes",
     "unsupported": "not possible",
 }
-"""Words for a run that did not end well."""
+"""Words for a failed run."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def _seen(series: ErrorSeries) -> TriedRun:
 LIMITS = Limits(time_s=30.0)
 """Limits of a run; the longest has `plan.steps.MOST_STEPS`, and takes a few seconds."""
 ENDS_A_SEARCH = ("unsupported", "timeout", "crashed")
-"""Endings of a run that no other step mends, or that cost its process or its time."""
+"""Endings of a run that no other step repairs, or that cost its process or its time."""
 
 
 @dataclass(frozen=True)

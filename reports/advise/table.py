@@ -157,11 +157,11 @@ def footer(advice: Advice) -> str:
     noise = f", noise {advice.noise:.0%}" if math.isfinite(advice.noise) else ""
     lines = [
         "Errors of place: angle [rad], position and displacement over the longest link, against "
-        "the closed form, the worst of the scenes. At the frame: with one step to a frame. "
-        "Sub-steps: the fewest that reach the target; 1.4 and 2 times as many reach it, too; where "
-        "none do, their error is the least that was seen.",
-        "ms per second: of stepping alone, for a second of the mechanism's own time, on the "
-        f"dearest scene; times of one run, to compare with each other{noise}.",
+        "the closed form, in the worst scene. At the frame: one step per frame. Sub-steps: the "
+        "fewest that reach the target, as do 1.4 and 2 times as many; if none do, those with "
+        "the smallest error.",
+        "ms per second: stepping alone, for a second of the mechanism's own time, in the "
+        f"slowest scene; compare these times only with each other{noise}.",
     ]
     if not advice.named:
         lines.append(
@@ -177,12 +177,12 @@ def _of_study(advice: Advice) -> Iterator[str]:
     known, folder = advice.known, harmless(str(advice.known.folder))
     if known.measured:
         yield (
-            f"{ABOUT} read between the steps of the study in {folder}, {known.turns:g} turns long; "
-            "what its steps do not reach to was run now, and so was every promise. Prices are "
-            "timed now as well: times of another hour or machine are not compared."
+            f"{ABOUT} read between the steps of the study in {folder}, {known.turns:g} turns "
+            "long; other steps and every promise were run now. Costs were timed now too: times "
+            "of another hour or machine can not be compared."
         )
     else:
-        yield f"Nothing of the study in {folder} serves: all was run now."
+        yield f"Nothing in the study in {folder} applies: everything was run now."
     for text in known.refusals:
         yield f"Run now: {text}."
 
@@ -207,7 +207,7 @@ def _of(advice: Advice, offer: Offer) -> Iterator[str]:
     yield reached.ended.reason if reached.ended else ""
     if reached.unsteady:
         numbers = few((str(n) for n in reached.unsteady), SHOWN)
-        yield f"within with {numbers} sub-steps, and not with more: that is luck, and no promise"
+        yield f"within with {numbers} sub-steps, but not with more: luck, and no promise"
     yield _growth(reached.promise or reached.at_frame)
     yield advice.caution(offer)
 

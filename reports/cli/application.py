@@ -150,7 +150,7 @@ def guarded() -> Iterator[None]:
         if package := broken_package(error):
             _end(
                 BAD_INPUT,
-                f"{package} can not be imported here: {why}; look at the environment variables "
+                f"{package} can not be imported here: {why}; check the environment variables "
                 "that it reads, or install it again",
             )
         _end(

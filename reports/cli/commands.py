@@ -30,7 +30,7 @@ COMMANDS: Mapping[str, Command] = {
     "verify": Command("requests.options:VerifyOptions", COMPARE, """
 Run scenes in engines and compare each with the closed form.
 
-With --mjcf a MuJoCo model of your own. The exit code is 1 where anything is out of tolerance."""),
+Or run a MuJoCo model of your own (--mjcf). The exit code is 1 if anything is out of tolerance."""),
     "sweep": Command("requests.sweep:SweepRequest", COMPARE, """
 Run a grid of scenes, engines, settings and steps; store it."""),
     "report": Command("requests.report:ReportRequest", COMPARE, """
@@ -40,66 +40,66 @@ The Markdown is for a pull request."""),
     "figures": Command("requests.figures:FiguresRequest", COMPARE, """
 Draw the diagrams of a sweep as SVG and PDF, for a paper."""),
     "stability": Command("requests.stability:StabilityRequest", COMPARE, """
-Grade engines on hard cases; find how far each holds them.
+Grade engines on hard cases; find where each one fails.
 
-The exit code is 0; it is 1 with --at where the value is not held, and with --baseline where an
-outcome got worse or a critical value moved by more than its doubt."""),
+The exit code is 0; it is 1 with --at if the value is not held, and with --baseline if an outcome
+got worse or a critical value moved by more than its uncertainty."""),
     "history": Command("requests.history:HistoryRequest", COMPARE, """
 Repeat a verification with several versions of an engine."""),
     "diff": Command("requests.diff:DiffRequest", COMPARE, """
 Compare two stored runs.
 
-The exit code is 1 where an error grew past the factor."""),
+The exit code is 1 if an error grew by more than the factor."""),
     "tune": Command("requests.tune:TuneRequest", COMPARE, """
 Find an engine's cheapest settings for a target error."""),
     "advise": Command("requests.advise:AdviseRequest", COMPARE, """
 Find the settings and sub-steps that fit your frame time.
 
-The exit code is 0 where some settings reach the target, 1 where none do."""),
+The exit code is 0 if some settings reach the target, else 1."""),
     "selftest": Command("requests.stability:SelftestRequest", COMPARE, """
 Plant faults in runs and check that a rule catches each.
 
-The exit code is 1 where one is not caught."""),
+The exit code is 1 if one is not caught."""),
     "explain": Command("requests.explain:ExplainRequest", COMPARE, """
 Explain a rule, or one cell: its error by part, what helps.
 
-A rule (CC110) or a clause of the contract (EC52): what it holds, why, how its limit comes about.
-A scene with --engine: its error by part, the limit that binds, and settings to turn."""),
+A rule (CC110) or a clause of the contract (EC52): its statement, its reason, its limit. A scene
+with --engine: its error by part, the limit that binds, and the settings to change."""),
     "judge": Command("requests.judge:JudgeRequest", OWN, """
 Compare a log of your own with the closed form.
 
-The exit code is 1 where it is out of tolerance."""),
+The exit code is 1 if it is out of tolerance."""),
     "run": Command("requests.run:RunRequest", OWN, """
 Run a scene in an engine and write its log.
 
-The exit code is 1 where the run did not end well."""),
+The exit code is 1 if the run failed."""),
     "export": Command("requests.export:ExportRequest", OWN, """
 Write a scene as MJCF, with its state as the keyframe."""),
     "solve": Command("requests.options:SolveOptions", REFERENCE, """
 Print the reference: places, rates and forces of a scene.
 
-Free motion and energy of a scene without a driver; deflection of elastic links, and what it
-changes."""),
+Also free motion and energy of a scene without a driver, and deflection of elastic links with its
+effects."""),
     "scenes": Command("requests.export:ScenesRequest", REFERENCE, """
 List the shipped scenes with structure, driver and source."""),
     "view": Command("requests.export:ViewRequest", REFERENCE, """
 Open MuJoCo's viewer, or draw the motion into a file.
 
-It draws without a screen, or with -o."""),
+It draws if there is no screen, or with -o."""),
     "cycle": Command("lectures.machine.regulation:CycleRequest", REFERENCE, """
 Print the steady cycle of a machine under its loads.
 
 Extreme speeds, coefficient of fluctuation, surplus of work, reduced inertia, power. A driven
-scene keeps its mean speed by a constant torque; a scene of free motion has its loads alone."""),
+scene keeps its mean speed by a constant torque; a scene of free motion has only its loads."""),
     "flywheel": Command("lectures.machine.regulation:FlywheelRequest", REFERENCE, """
 Size the flywheel for a coefficient of fluctuation.
 
-Exact, and as textbooks approximate it; with the speed over the cycle with it and without."""),
+Exact, and as textbooks approximate it; also the speed over the cycle, with and without it."""),
     "vibration": Command("lectures.machine.vibration:VibrationRequest", REFERENCE, """
 Print vibrations of elastic links at one or more speeds.
 
-Natural frequencies, deflection, stability, resonances. A resonance, where there is no periodic
-motion, ends with exit code 2."""),
+Natural frequencies, deflection, stability, resonances. The exit code is 2 at a resonance, which has
+no periodic motion."""),
     "rotatability": Command("lectures.machine.rotatability:RotatabilityRequest", REFERENCE, """
 Print which links turn fully, swings and dead points.
 
@@ -163,11 +163,11 @@ List engines: versions, profiles, how to install them."""),
     "engines check": Command("requests.engines:EngineCheckRequest", COMPARE, """
 Check an engine against the contract of engines.
 
-It prints how to mend what an engine does not hold. The exit code is 0 where it holds all of it, 1
-where it does not."""),
+It prints how to repair what breaks a clause. The exit code is 0 if the engine holds every clause,
+else 1."""),
     "recipe forces": Command("requests.export:ForceRecipeRequest", OWN, """
 Print a program that reads reactions and the driving torque.
 
-It needs the engine alone. Run it to have them over a turn, as lines of numbers with commas."""),
+The program needs only the engine, and prints them over a turn as lines of numbers with commas."""),
 }
 # fmt: on

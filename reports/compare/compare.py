@@ -356,7 +356,7 @@ def _elsewhere(run: Run, scene: Scene, state: State) -> list[str]:
     }
     same = max(SAME, rounding_of(run.precision))
     far = [*((*each, "rad") for each in turned.items()), *((*each, "L") for each in moved.items())]
-    return [f"start: {body} begins {by:.2g} {unit} off" for body, by, unit in far if by > same]
+    return [f"start: {body} has an error of {by:.2g} {unit}" for body, by, unit in far if by > same]
 
 
 def _words(name: str, asked: object, found: object) -> str:

@@ -238,8 +238,9 @@ class ChainTruth(ElasticTruth):
         return replace(
             done,
             reason=f"{done.reason}; the fastest frequency of {self.chain.count} segments is "
-            f"{self.fastest_rad_s:.4g} rad/s, times the step {stiff:.2g}, and explicit steps hold "
-            f"up to about {STEADY}: take {self.needed_step}, or fewer segments",
+            f"{self.fastest_rad_s:.4g} rad/s (times the step: {stiff:.2g}), and explicit "
+            f"steps are stable up to about {STEADY}: use {self.needed_step}, or fewer "
+            "segments",
         )
 
     @property

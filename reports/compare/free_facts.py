@@ -23,8 +23,8 @@ MOST_GROWTH = 1e3
 """Sensitivity of free motion from which on errors of phase cancel and add up at random, and show no
 order."""
 FREE_MOTION = (
-    "Free motion: largest errors at the same time over the sensitivity, by how much a small change "
-    "of the start has grown; geometry at the logged angle of the driver; L longest link, w "
+    "Free motion: largest errors at the same time over the sensitivity, the growth of a small "
+    "change of the start; geometry at the logged angle of the driver; L longest link, w "
     "driver's peak speed."
 )
 OVER_G = (

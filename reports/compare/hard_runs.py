@@ -94,9 +94,9 @@ def _lean(chain: WindowChain, motion: Motion) -> Array:
 
 Passage = Literal["over", "back", "undecided", "broken"]
 OVER = -0.5
-"""Part of its way from the toggle to the start, beyond the toggle, at which a run has got over."""
+"""Part of the way from toggle to start: a run that is so far beyond the toggle has passed it."""
 NEAR = 0.5
-"""The same before the toggle, within which a run that turns back has been near it."""
+"""The same before the toggle: a run that comes nearer and turns back was near it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,7 +61,7 @@ def _truth(
     chain = elastic_truth.cut_scene(scene, count, springs)
     if not isinstance(chain, cut_scenes.SegmentedScene):
         raise EngineError(
-            f"{scene.name}: free motion with beams of an engine's own has no reference yet; leave "
+            f"{scene.name}: free motion with an engine's own beams has no reference yet; leave "
             "--springs beam out"
         )
     rigid = free_truth.free_truth(cut_links.with_rigid_links(scene), steps, dt_s)

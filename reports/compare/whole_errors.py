@@ -153,8 +153,8 @@ def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[st
         notes.append(f"forces: {run.engine} does not report those of {left_out}")
     if dead:
         notes.append(
-            f"forces: {count(dead, 'sample')} of {reference.time_s.size} in dead points left out, "
-            "or beside jumps of a load or of friction: there they are not determined"
+            f"forces: left out {count(dead, 'sample')} of {reference.time_s.size}, in dead "
+            "points or beside jumps of a load or of friction, where they are not determined"
         )
     if passed:
         notes.append(

@@ -30,8 +30,7 @@ SCENES = (
 )
 """One scene of each kind of joint; the first applies to every engine."""
 THE_SCENE = "EC21"
-"""The clause that a session is the scene: where it is held nowhere, there is no session for the
-others."""
+"""The clause that a session is the scene: if no scene holds it, the others have no session."""
 Answer = Literal["held", "broken", "not tried"]
 
 

@@ -98,10 +98,10 @@ class Subject:
             raise NotTriedError(str(error)) from None
 
     def reports_forces(self) -> None:
-        """Raise NotTriedError where the engine declares that it reports no forces."""
+        """Raise NotTriedError if the engine declares that it reports no forces."""
         if self.engine.forces_of == "nothing":
             why = self.engine.no_forces and f": {self.engine.no_forces}"
-            raise NotTriedError(f"forces_of says that it reports no forces{why}")
+            raise NotTriedError(f"forces_of is nothing: it reports no forces{why}")
 
     def force_session(self, profile: str = "tuned", steps: int = STEPS) -> ForceSession:
         """Open as `opened`, for an engine that reports forces. Raises NotTriedError."""
@@ -158,8 +158,8 @@ def apart(one: Poses, other: Poses) -> float:
 
 
 Check = Callable[[Subject], Iterator[str]]
-"""Check that yields faults, in words and numbers: nothing where the clause is held. Raises
-NotTriedError where it does not apply."""
+"""Check that yields faults in words and numbers, none if the clause is held. Raises NotTriedError
+if it does not apply."""
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,11 @@ SLIGHT = 1e-2
 """Largest square of a slope for which a curvature is the second derivative of a deflection, to
 about that share of it."""
 STARTS: dict[elastic.Shape, str] = {
-    "periodic": "Starts on the periodic motion: it comes back after a period of the driver.",
-    "quasi-static": "Starts with the deflection that the rigid motion asks for (quasi-static); "
-    "what that leaves of the vibration rings on{damped}.",
-    "straight": "Starts straight: it rings, at up to twice the deflection that the motion asks "
-    "for{damped}.",
+    "periodic": "Starts on the periodic motion, with the period of the driver.",
+    "quasi-static": "Starts with the deflection that the rigid motion requires (quasi-static); the "
+    "rest of the vibration continues{damped}.",
+    "straight": "Starts straight: it vibrates, up to twice the deflection that the motion "
+    "requires{damped}.",
 }
 
 
@@ -90,15 +90,15 @@ def elastic_warnings(scene: Scene, largest_m: dict[str, float]) -> Iterator[str]
             ratio = own.bending_rad_s(line.length_m, line.density_kg_m) / abs(law.speed_rad_s)
             if 1 <= round(ratio) <= SLOW and abs(ratio - round(ratio)) < NEAR:
                 yield (
-                    f"Near resonance: the first natural frequency of {name} is {ratio:.4g} times "
-                    "the speed, and nothing damps it; small changes of either change all of its "
-                    "deflection. Take a half-integer ratio, or give it damping_s."
+                    f"Near resonance: the first natural frequency of {name} is {ratio:.4g} "
+                    "times the speed, and nothing damps it; small changes of either change its "
+                    "whole deflection. Use a half-integer ratio, or give it damping_s."
                 )
         slope = math.pi * largest_m.get(name, 0.0) / line.length_m
         if slope**2 > SLIGHT:
             yield (
                 f"{name} bends by {100 * largest_m[name] / line.length_m:.2g} % of its length: "
-                f"curvatures are taken as of small slopes, which is off by about "
+                "curvatures are those of small slopes, with an error of about "
                 f"{readable(100 * slope**2, 2)} % here; give it more stiffness, or less speed."
             )
 
@@ -144,9 +144,9 @@ def beam_certainty(motion: elastic_motion.ElasticHistory) -> list[str]:
     if not motion.stiffened:
         short = _shares(own, replace(motion, stiffened=True).at(time_s))
         notes.append(
-            "The shortening of bent links, which the linear theory leaves out, changes deflections "
-            f"by {100.0 * short.deflection:.3g} % of the largest; engines are compared with the "
-            "motion with it."
+            "The shortening of bent links, which the linear theory leaves out, changes "
+            f"deflections by {100.0 * short.deflection:.3g} % of the largest; engines are "
+            "compared with the motion that has it."
         )
     return notes
 
@@ -159,17 +159,17 @@ def _by_other_shapes(motion: elastic_motion.ElasticHistory, time_s: Array, own: 
     if not slow or described(motion.scene, fewer) == described(motion.scene, motion.by):
         found = _shares(own, motion.finer.at(time_s))
         told = [
-            f"deflections are off by about {error_text(found.deflection)} of the largest",
-            f"angles by {error_text(found.angle_rad)} rad",
+            f"deflections {error_text(found.deflection)} of the largest",
+            f"angles {error_text(found.angle_rad)} rad",
         ]
         if own.forces is not None and own.forces.torque.any():
-            told.append(f"the torque by {error_text(found.torque)} of its largest")
-        return f"By the next finer description, {', '.join(told)}."
+            told.append(f"torque {error_text(found.torque)} of its largest")
+        return f"Uncertainty, from the next finer description: {', '.join(told)}."
     found = _shares(replace(motion, by=fewer).at(time_s), own)
     return (
-        f"By {described(motion.scene, fewer)} deflections are off this by "
-        f"{error_text(found.deflection)} of the largest, angles by {error_text(found.angle_rad)} "
-        "rad; this is off by less."
+        f"With {described(motion.scene, fewer)} deflections differ by "
+        f"{error_text(found.deflection)} of the largest, angles by "
+        f"{error_text(found.angle_rad)} rad: the uncertainty is less."
     )
 
 

@@ -101,7 +101,7 @@ def cycle_words(scene: Scene, cycle: Efficiency | None) -> list[str]:
             words.append(f"{taken}; no useful work is done in it, so it has no efficiency.")
     for locks, what, why in (
         (True, "locks itself", "no finite torque keeps it moving, and its cycle has no efficiency"),
-        (False, "may jam", "the load helps, and another equilibrium, of more friction, is as good"),
+        (False, "may jam", "the load helps, and a second equilibrium exists, with more friction"),
     ):
         if ranges := [each.ends for each in cycle.locked if each.locks == locks]:
             words.append(f"It {what} with {scene.driver.joint} {listed(ranges)}: there {why}.")

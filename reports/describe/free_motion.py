@@ -293,9 +293,9 @@ def free_notes(motion: FreeMotion, until_s: float) -> list[str]:
     off, growth = float(motion.error_rad(last)[0]), float(motion.sensitivity(last)[0])
     angle = f"the angle of {motion.scene.driver.link}" if motion.by_dyads else "every link's angle"
     notes = [
-        f"Integrated with high precision, no closed form: {angle} is off by at most "
+        f"Integrated with high precision, no closed form: uncertainty of {angle} at most "
         f"{error_text(off)} rad at {until_s:g} s.",
-        f"Sensitivity {growth:.3g}: growth of a small change of the start by then.",
+        f"Sensitivity {growth:.3g}: growth of a small change of the start until then.",
     ]
     passed = [one for one in motion.passages if one.time_s <= until_s]
     limits = [

@@ -41,8 +41,8 @@ def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: boo
     for load in () if by_law else scene.loads.values():
         if load.over == "time" and not isinstance(load.characteristic, characteristics.Constant):
             raise CrankcheckError(
-                f"forces at an angle: loads.{load.name} follows time, and an angle does not say "
-                "when it is; ask for a motion over time"
+                f"forces at an angle: loads.{load.name} follows time, and an angle has none; "
+                "request a motion over time"
             )
     when = motion.time_s if by_law else motion
     acting = forces(scene, when, bound=bound, skip_dead_points=True)
@@ -71,7 +71,7 @@ def undriven(scene: Scene, acting: Forces) -> Forces:
     (NaN). Raises CrankcheckError where redundant joints leave the reactions open."""
     if acting.undetermined:
         raise CrankcheckError(
-            f"forces: {scene.name} is free and has reactions alone, and {acting.undetermined}; "
+            f"forces: {scene.name} is free and has only reactions, and {acting.undetermined}; "
             "solve it without forces"
         )
     off = np.abs(acting.torque) > UNCERTAIN * scene.longest_m * _largest(acting)
@@ -117,15 +117,15 @@ def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
     if dead.size:
         why = (
             f"the driving {scene.driver.effort} and the reactions are not determined there, and "
-            "left out; beside it they may be of any size"
+            "left out; near it they can have any size"
         )
         if not motion.forces.drive_unit:
-            why = "the reactions are left out there; beside it they are right"
+            why = "the reactions are left out there; near it they are correct"
         notes.append(f"Dead point, {_where(scene, motion, dead)}: {why}.")
     if locked.size:
         notes.append(
             f"Locked, {_where(scene, motion, locked)}: friction grows there by more than the "
-            "torque against it; there are no forces, and beside it they may be of any size."
+            "torque against it; there are no forces, and near it they can have any size."
         )
     return notes
 
@@ -179,14 +179,14 @@ def force_certainty(scene: Scene, acting: Forces) -> str:
             told.append(f"{float(fit.max()):.1e} {unit}")
     if apart.any() and apart.all():
         return (
-            "Two equilibria here, as the mechanism may jam: these forces, those of less friction, "
-            "have no bound."
+            "Two equilibria here, as the mechanism may jam: these forces are those of less "
+            "friction, without a bound."
         )
     if not told:
         return "Forces are not certain here: a dead point is near, or a load sets in."
     words = f"Forces certain to {', '.join(told)}"
     if doubtful.any():
-        words += f", but at {count(int(doubtful.sum()), 'instant')}, in or near a dead point or "
+        words += f", except at {count(int(doubtful.sum()), 'instant')}, in or near a dead point or "
         words += "where a load sets in or ends"
     return f"{words}."
 

@@ -81,8 +81,8 @@ def footer(diff: Diff) -> list[str]:
     return [
         "Largest errors against the reference as pure numbers: angles in rad, lengths over the "
         "longest link, rates over the driver's peak speed and its square.",
-        f"Worse: an error above {diff.factor:g} times the old one by more than rounding explains, "
-        "or a cell that ended well before.",
+        f"Worse: an error above {diff.factor:g} times the old one by more than rounding "
+        "explains, or a cell that succeeded before.",
         f"old: {origin(diff.old)}",
         f"new: {origin(diff.new)}",
     ]

@@ -371,7 +371,7 @@ def _efficiency(turn: ForceTurn) -> Figure | None:
         if (samples := turn.acting.has_equilibria(number)).any():
             bands.append((samples, look))
             entries.append((Patch(**look), words))
-    notes = [*cycle_words(turn.scene, cycle), "No curve without power on the way.", *turn.notes]
+    notes = [*cycle_words(turn.scene, cycle), "No curve where no power flows.", *turn.notes]
     panel = LinePanel("efficiency", [])
     figure, (axes,) = line_figure(turn, "Efficiency", [panel], notes, entries)
     for samples, look in bands:

@@ -156,7 +156,7 @@ def _check(python: Path, asked: EngineVersion, run: Runner) -> None:
         raise NotMeasuredError(
             shortened(
                 f"installed, but the new environment finds {answer or 'no ' + asked.engine} in "
-                f"place of {asked.version}: look into the settings of pip or uv"
+                f"place of {asked.version}: check the settings of pip or uv"
             )
         )
 
@@ -169,8 +169,8 @@ def _clear(folder: Path) -> None:
         shutil.rmtree(folder)
     except OSError as error:
         raise CrankcheckError(
-            f"{folder}: left over, and can not be taken away: {error.strerror or error}; "
-            "remove it, or choose another --cache"
+            f"{folder}: left over, and can not be removed: {error.strerror or error}; remove it "
+            "by hand, or choose another --cache"
         ) from None
 
 

@@ -105,8 +105,8 @@ def _calm(step: VersionStep) -> str:
         return f"{after} and {before} have no error in common to compare"
     factors = [change.factor for change in step.changes if change.changed]
     if not factors:
-        return f"{after} differs from {before} in no error by more than a tenth"
-    return f"{after} differs from {before} by {times(max(factors))} times at most in any error"
+        return f"no error of {after} differs from that of {before} by more than a tenth"
+    return f"errors of {after} differ from those of {before} by {times(max(factors))} times at most"
 
 
 def largest(changes: Iterable[FollowedChange]) -> FollowedChange | None:

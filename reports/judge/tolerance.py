@@ -248,7 +248,7 @@ def _known_quantity(name: str, place: str) -> str:
     if name in EVERY:
         return name
     hint = suggestion(name, EVERY, "use one of", 2, 0.6)
-    raise CrankcheckError(f"{place}: {name!r} is no quantity; {hint}")
+    raise CrankcheckError(f"{place}: {name!r} is not a quantity; {hint}")
 
 
 def _positive_number(number: str, place: str) -> float:

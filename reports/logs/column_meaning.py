@@ -33,7 +33,7 @@ def of_column(
         if told is None:
             return found
         raise CrankcheckError(
-            f"{where}: add of, kind and unit, as the name does not say them: {found}"
+            f"{where}: add of, kind and unit, which the name does not state: {found}"
         )
     told = told or ChannelTable.model_construct(column=column)
     of = told.of or found.of
@@ -48,7 +48,7 @@ def of_column(
         kind = next((KINDS[k, told.kind] for k in kinds if (k, told.kind) in KINDS), None)
     if kind is None or kind.body_kind not in kinds:
         have = ", ".join(name for k, name in KINDS if k in kinds)
-        asked = f"{told.kind!r} is no kind of reading of" if told.kind else "none for"
+        asked = f"{told.kind!r} is not a kind of reading of" if told.kind else "none for"
         raise CrankcheckError(f"{where}, kind: {asked} {' and '.join(kinds)} {of}; use {have}")
     unit = told.unit or found.unit or si(kind.dimension)
     if DIMENSION[unit] != kind.dimension:
@@ -64,7 +64,7 @@ def of_column(
     time = told.time or times.get(whose, "")
     if told.time is not None and told.time not in times.values():
         hint = suggestion(told.time, times.values(), "columns of times are")
-        raise CrankcheckError(f"{where}, time: {told.time!r} is no column of times; {hint}")
+        raise CrankcheckError(f"{where}, time: {told.time!r} is not a column of times; {hint}")
     time = time if time != times["time"] else ""
     plain = Channel(column, kind, of, unit, told.sign, told.offset)
     return replace(plain, relative_to=relative_to, on=on, delay_s=told.delay_s, time=time)
@@ -77,7 +77,7 @@ def _check_roles(
         others = [name for name in scene.links if name != of]
         hint = suggestion(relative_to, others, "use one of")
         raise CrankcheckError(
-            f"{where}, relative_to: {relative_to!r}; an angle, or a rate of it, of a link is "
+            f"{where}, relative_to: {relative_to!r}; only the angle of a link, or its rate, is "
             f"relative to another link: {hint}"
         )
     bodies = scene.pins.get(of, ())
@@ -115,7 +115,7 @@ FLAT = 1e-9
 
 
 LOOKED_AT = 10_000
-"""Rows in which the numbers of a column are looked for."""
+"""Rows in which the numbers of a column are searched."""
 WITH_UNIT = re.compile(
     r"[-+]?(\d+[.,]?\d*|[.,]\d+)(e[-+]?\d+)?\s*([^\W\d]|[°%/*·^²])+(-?[12])?", re.I
 )
@@ -188,9 +188,9 @@ def _refuse_huge(columns: Columns, of: Channel | GapColumn, values: Array) -> No
         return
     bound = f"{MOST_TURNS:g} turns" if angle else f"{MOST:g} {si(DIMENSION[of.unit])}"
     raise CrankcheckError(
-        f"{columns.at(of.column, row)}: found {float(columns.raw[of.column][row]):.6g} {of.unit}; "
-        f"readings are at most {bound}: mend the cell, or leave the column out ([[channel]] ignore "
-        "= true)"
+        f"{columns.at(of.column, row)}: found {float(columns.raw[of.column][row]):.6g} "
+        f"{of.unit}; readings are at most {bound}: correct the cell, or leave the column out "
+        "([[channel]] ignore = true)"
     )
 
 
@@ -212,7 +212,7 @@ def gaps_told(columns: Columns, gaps: Iterable[GapColumn]) -> tuple[Gap, ...]:
                 f"two columns for one quantity, the gap of {gap.of}; rename one, or ignore = true"
             )
         if DIMENSION[gap.unit] != "length":
-            raise CrankcheckError(f"column {gap.column!r}: {gap.unit} is no unit of length")
+            raise CrankcheckError(f"column {gap.column!r}: {gap.unit} is not a unit of length")
         opening = np.abs(columns.numbers(gap.column) * UNITS["length"][gap.unit])
         _refuse_huge(columns, gap, opening)
         found.append(Gap(**vars(gap), opening_m=opening))

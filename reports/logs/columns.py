@@ -116,7 +116,7 @@ class Columns:
             except (ValueError, OverflowError):
                 text = cell if isinstance(cell, str) else ""
                 raise CrankcheckError(
-                    f"{self.at(name, row)}: found {cut(repr(cell), 40)}, no number; "
+                    f"{self.at(name, row)}: found {cut(repr(cell), 40)}, not a number; "
                     f"{cure_of(text, self.decimal)}"
                 ) from None
         return found
@@ -219,7 +219,7 @@ def _parquet(raw: bytes, wanted: Callable[[str], bool]) -> tuple[pa.Table, list[
         return file.read(columns=chosen or names[:1]), names
     except (pa.ArrowException, OSError, ValueError) as error:
         raise UnreadableError(
-            f"no Parquet that can be read: {cut(str(error).splitlines()[0], 200)}"
+            f"not readable as Parquet: {cut(str(error).splitlines()[0], 200)}"
         ) from None
 
 
@@ -246,11 +246,11 @@ def cure_of(text: str, decimal: str) -> str:
     """Return advice to make a text a number."""
     text = text.strip()
     if COMMA.fullmatch(text) and decimal == ".":
-        return "write decimal points, or say decimal = ',' in [file] of the map"
+        return "write decimal points, or set decimal = ',' in [file] of the map"
     if THOUSANDS.fullmatch(text):
         return "write numbers without marks between the thousands"
     if "." in text and decimal == "," and is_number(text):
-        return "write a decimal comma, as the map says decimal = ','"
+        return "write a decimal comma, as the map has decimal = ','"
     if FORTRAN.fullmatch(text):
         return "write e for the d of the exponent"
     if CLOCK.fullmatch(text):

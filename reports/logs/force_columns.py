@@ -268,7 +268,7 @@ def _others(scene: Scene) -> dict[str, str]:
     bodies = [GROUND, *scene.links, *(name for meet in met.values() for name in meet)]
     found: dict[str, str] = {}
     for point, meet in met.items():
-        where = f"in {point} meet {listed(meet)}" if meet else f"{point} is no pin"
+        where = f"in {point} meet {listed(meet)}" if meet else f"{point} is not a pin"
         for body in dict.fromkeys(bodies):
             why = FORCE_LENGTH if body in meet else f"{where}, not {body}" if meet else where
             for stem in (f"{point}_{body}", f"{point}_on_{body}"):

@@ -67,9 +67,9 @@ def time_columns(columns: Columns, map_: Map) -> dict[str, str]:
     for whose, several in found.items():
         if len(several) > 1:
             raise CrankcheckError(
-                f"{columns.source}: two columns of times, {several[0]!r} and {several[1]!r}; say "
-                "which in [time] of a map, and ignore the other, or say time in the [[channel]] of "
-                f"columns that go by it; of two rates, {ONE_FILE}"
+                f"{columns.source}: two columns of times, {several[0]!r} and {several[1]!r}; "
+                "name one in [time] of a map, and ignore the other or set time in the "
+                f"[[channel]] of its columns; of two rates, {ONE_FILE}"
                 if whose == "time"
                 else f"{columns.source}: two columns for {whose}: {', '.join(several[:2])}"
             )
@@ -143,9 +143,9 @@ def _refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> N
     if turns > MOST_TURNS:
         raise CrankcheckError(
             f"{columns.source}, column {cut(column)!r}: t = {far:.9g} s is {turns:.3g} turns of "
-            f"{scene.driver.joint} after the start; count the time from the start of the motion, "
-            f"or from the first row: zero = {'first'!r} in [time] of the map, and say unit there "
-            "where it is another, as 'ns'"
+            f"{scene.driver.joint} after the start; count the time from the start of the "
+            f"motion, or from the first row: zero = {'first'!r} in [time] of the map; set unit "
+            "there if it is another, as 'ns'"
         )
 
 
@@ -159,9 +159,9 @@ def _refuse_holes(columns: Columns, column: str, time_s: Array, steps: Array) ->
     lacking = round(float(steps[row]) / usual) - 1
     raise CrankcheckError(
         f"{columns.at(column, row + 1)}: a gap of {steps[row]:.4g} s in a log of a sample every "
-        f"{usual:.4g} s, {lacking} of them missing after t = {time_s[row]:.6g} s ({far.size} such "
-        f"gaps); fill them, cut the log there, or say {cut('holes = ' + repr('meant'))} in [file] "
-        "of the map"
+        f"{usual:.4g} s, {lacking} of them missing after t = {time_s[row]:.6g} s ({far.size} "
+        f"such gaps); fill them, cut the log there, or set {cut('holes = ' + repr('meant'))} in "
+        "[file] of the map"
     )
 
 
@@ -183,14 +183,16 @@ def driver_channel(
         return crank
     cure = ", which forces take" * forces
     cure += (
-        f" ({cut(clock)!r} may be it; if not, ignore = true in its [[channel]])" if clock else ""
+        f" ({cut(clock)!r} may be it; if not, set ignore = true in its [[channel]])"
+        if clock
+        else ""
     )
     if cranked and not clock:
         cure = f"; frame numbers over their rate are times; with the angle of {scene.driver.name}, "
         cure += "none are needed"
     raise CrankcheckError(
         f"{columns.source}: no column of times; found {few(map(cut, columns.raw), 8)}; name one "
-        f"time_s or time_ms, or say it in [time] of a map{cure}"
+        f"time_s or time_ms, or name it in [time] of a map{cure}"
     )
 
 

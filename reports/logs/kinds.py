@@ -158,7 +158,7 @@ def without_unit(column: str) -> tuple[str, str]:
 
 
 LAST_ALONE = {"m", "in", "ft", "cm", "min", "g"}
-"""Units that have other meanings where they do not stand last."""
+"""Units that have another meaning unless they stand last."""
 MOST_WORDS = 12
 """Words at the end of a name that are searched for its unit."""
 
@@ -184,7 +184,7 @@ def one_unit(column: str, unit: str) -> str:
     if unit and bracket and unit != bracket:
         raise CrankcheckError(
             f"column {cut(column)!r}: units that contradict each other, {unit} and {bracket}; "
-            "rename it, or say unit in the map"
+            "rename it, or set unit in the map"
         )
     return unit or bracket
 
@@ -194,7 +194,7 @@ def refuse_other_dimension(column: str, unit: str, dimension: str) -> None:
     if unit and DIMENSION[unit] != dimension:
         raise CrankcheckError(
             f"column {cut(column)!r}: {unit} is a unit of {DIMENSION[unit]}, and its name says "
-            f"{dimension}; rename it, or say kind and unit in the map"
+            f"{dimension}; rename it, or set kind and unit in the map"
         )
 
 

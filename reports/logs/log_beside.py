@@ -146,7 +146,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
             raise
         has = any(is_driver(each.channel, scene) for each in log.readings)
         raise ReachError(
-            f"{error} If the log goes another way than the scene's driver, "
+            f"{error} If the log moves differently from the scene's driver, "
             f"{'judge it at its own' if has else 'log the'} angle of {scene.driver.link}: "
             "--drive logged"
         ) from None

@@ -114,7 +114,7 @@ def _of_known_words(map_: Map, place: str) -> Map:
     twice = set[str]()
     if map_.time.unit is not None and map_.time.unit not in UNITS["time"]:
         hint = suggestion(map_.time.unit, UNITS["time"], "use one of")
-        faults.append(f"[time] unit: {map_.time.unit!r} is no unit of time; {hint}")
+        faults.append(f"[time] unit: {map_.time.unit!r} is not a unit of time; {hint}")
     for one in map_.channel:
         where = f"[[channel]] {one.column!r}"
         if one.column in twice:

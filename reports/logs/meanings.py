@@ -33,8 +33,8 @@ def understood(
     for column in told:
         if column in times.values():
             raise CrankcheckError(
-                f"[[channel]] {column!r}: it is the column of times; say of it in [time], or which "
-                "other column that is"
+                f"[[channel]] {column!r}: it is the column of times; describe it, or name "
+                "another, in [time]"
             )
     borne = {name for name in columns.raw if forces and names_force(name, scene)}
     named = SceneNames(scene)
@@ -141,7 +141,7 @@ def _nothing_found_text(columns: Columns, scene: Scene, unused: Sequence[tuple[s
     bodies = few([*scene.links, *scene.pins, *scene.sliders], 12)
     why = f" ({cut(unused[0][0])!r}: {unused[0][1]})" if unused else ""
     return (
-        f"{columns.source}: no column is of scene {scene.name}, which has {bodies}; found "
+        f"{columns.source}: no column belongs to scene {scene.name}, which has {bodies}; found "
         f"{few(map(cut, columns.raw), 8)}{why}; name columns such as "
         f"{next(iter(scene.links))}_deg, or write a map: --write-map map.toml"
     )
@@ -246,7 +246,7 @@ def blank_map(columns: Columns, scene: Scene, map_: map_file.Map) -> tuple[str, 
         if name in told:
             lines += map_file.table_lines("[[channel]]", told[name])
         elif name in bodies:
-            lines.append(f"# {toml_value(name)} is taken as its name says")
+            lines.append(f"# {toml_value(name)} is read by its name")
         else:
             lines += map_file.form_lines(name, _why_no_meaning(name, named))
     return "\n".join(lines) + "\n", "; ".join(lacks)

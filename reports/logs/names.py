@@ -60,17 +60,17 @@ def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | s
     words = [word for word in words if word not in FILLERS | RELATIVE]
     of, relative_to, on = _roles(bodies, named, relative=relative)
     if not of:
-        return f"it names {' and '.join(bodies)}; a map says of which it is"
+        return f"it names {' and '.join(bodies)}; a map can name the right one"
     if words == ["gap"]:
         kinds.refuse_other_dimension(column, unit, "length")
         return kinds.Meaning(of, None, True, unit or "m")
     slider = "slider" in re.split(r"[^a-z]+", column.lower())
     kind = kind_of_words(named.kinds_of(of), words, unit, slider=slider)
     if not told and VOLTS.search(column):
-        return "'V' is no unit that is known, such as deg/s or mm/s^2"
+        return "'V' is not a known unit, such as deg/s or mm/s^2"
     if isinstance(kind, str):
         odd = "" if told else _odd_unit(kinds.OF_TIME.sub("", column), named)
-        return f"{cut(odd)!r} is no unit that is known, such as deg/s or mm/s^2" if odd else kind
+        return f"{cut(odd)!r} is not a known unit, such as deg/s or mm/s^2" if odd else kind
     if kind.dimension == "angle" and re.search(r"rads\W*$", column, re.IGNORECASE):
         unit = told or "rad"  # more often radians than radians per second
     kinds.refuse_other_dimension(column, unit, kind.dimension)
@@ -149,7 +149,7 @@ _JOINABLE = "|".join(sorted({*OF_PLACES, *SPEEDS, *ACCELERATIONS} - VAGUE, key=l
 JOINED = re.compile(rf"^(ang|angular|lin|linear|rot|rotational|trans)(?=(?:{_JOINABLE})\d*$)")
 DOTTED = re.compile(r"^(theta|phi|q|x|y|s|omega)(d?dot)\d*$")
 _QUANTITIES = "|".join(sorted((word for word in QUANTITY_WORDS if len(word) > 1), key=len)[::-1])
-OUT_OF_PLANE = "it is a component out of the plane, which is the same throughout in a plane motion"
+OUT_OF_PLANE = "it is a component out of the plane, which is constant in a plane motion"
 
 
 def kind_of_words(
@@ -160,7 +160,7 @@ def kind_of_words(
         return kinds.KINDS["elastic", " ".join(words)]
     if "link" in body_kinds:
         if "orientation" in words and not {*"xyzw"}.isdisjoint(words):
-            return "a component of a quaternion is no angle"
+            return "a component of a quaternion is not an angle"
         kind = _kind_of_order("link", [word for word in words if word != "z"] or words, unit)
         if isinstance(kind, str) and len(words) > 1:
             upright = _kind_of_order("link", [word for word in words if word not in TILTS], "")
@@ -235,8 +235,8 @@ def _why_no_kind(words: Sequence[str], kind: str, unit: str) -> str:
         "slider": "displacement, speed or acceleration",
     }
     if words:
-        return f"{cut(' '.join(words))!r} is no kind of reading of a {kind}: {told[kind]}"
-    of = f"{unit} is a unit of {kinds.DIMENSION[unit]}, and" if unit else "it tells no kind:"
+        return f"{cut(' '.join(words))!r} is not a kind of reading of a {kind}: {told[kind]}"
+    of = f"{unit} is a unit of {kinds.DIMENSION[unit]}, and" if unit else "it names no kind:"
     return f"{of} a {kind} has {told[kind]}"
 
 
@@ -245,7 +245,7 @@ AMBIGUOUS = {"d", "f", "g", "h", "m", "n", "o", *INDICES}
 OF_POINTS = "(?i:pt|point|joint|jnt|node|marker|pin)?"
 """Words in front of a point's name in a word: PointC_x."""
 LONG = 5
-"""Names of bodies from this length on are looked for within words."""
+"""Names of bodies from this length on are searched within words."""
 SHORT = 2
 """Names of bodies up to this length depend on case: `a` is an acceleration, `A` a point."""
 

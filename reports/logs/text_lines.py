@@ -42,7 +42,9 @@ def beginning(raw: bytes) -> Beginning:
     mark = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
     look = raw[mark : mark + LOOK]
     if b"\0" in look:
-        raise UnreadableError("no text: it holds null bytes; the ending says what a file is")
+        raise UnreadableError(
+            "not a text: it holds null bytes; give the file the ending of its format"
+        )
     if b"\n" not in look and b"\r" in look:
         raise UnreadableError("lines end in \\r alone; save the file with \\n or \\r\\n")
     parts = look.split(b"\n")
@@ -149,8 +151,7 @@ def refuse_columns(columns: int) -> None:
     """Raise UnreadableError for more columns than are examined."""
     if columns > MOST_COLUMNS:
         raise UnreadableError(
-            f"{columns} columns; at most {MOST_COLUMNS} are read: leave out what is not of the "
-            "mechanism"
+            f"{columns} columns; at most {MOST_COLUMNS} are read: leave out those of other things"
         )
 
 
@@ -323,7 +324,7 @@ def _refuse_missing_names(header: str, names: Sequence[str], at: int, separator:
     if blank is not None:
         more = ""
         if separator == "\t":
-            more = ", or say separator = ' ' in [file] of the map if several tabs are one"
+            more = ", or set separator = ' ' in [file] of the map if several tabs are one"
         raise UnreadableError(f"line {at + 1}: column {blank + 1} has no name; give it one{more}")
     if header.count('"') % 2:
         raise UnreadableError(f"line {at + 1}: a quote that is not closed")

@@ -60,7 +60,7 @@ class RowReader:
                 if text_lines.COMMA.fullmatch(field):
                     raise UnreadableError(
                         f"row {at + 1}, column {cut(name)!r}: found {cut(field)!r}, a decimal "
-                        "comma; write decimal points, or say decimal = ',' in [file] of the map"
+                        "comma; write decimal points, or set decimal = ',' in [file] of the map"
                     )
 
     def _read(self, types: Mapping[str, pa.DataType]) -> pa.Table:
@@ -145,8 +145,7 @@ def _refuse_count(found: int, names: int, at: int, separator: str, *, ends: bool
         )
     title = f", and {TITLE}" if names == 1 else ""
     raise UnreadableError(
-        f"{counts}, separated by {mark}; say separator in [file] of the map if that is another"
-        f"{title}"
+        f"{counts}, separated by {mark}; set separator in [file] of the map if it is another{title}"
     )
 
 

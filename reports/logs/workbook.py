@@ -46,7 +46,7 @@ def sheet_columns(raw: bytes, asked: str) -> SheetTable:
         raise
     except Exception as error:  # whatever a damaged archive makes of its reader
         why = cut(f"{type(error).__name__}: {error}".splitlines()[0], 200)
-        raise UnreadableError(f"no workbook that can be read: {why}") from None
+        raise UnreadableError(f"not readable as a workbook: {why}") from None
     try:
         return _of_rows(rows)
     except UnreadableError as error:
@@ -54,7 +54,7 @@ def sheet_columns(raw: bytes, asked: str) -> SheetTable:
         others, which = [*sheets[at + 1 :], *sheets[:at]], ""
         if others:
             which = (
-                f"; if the log is another, as {few(others, 8)}, say sheet = {others[0]!r} in [file]"
+                f"; if the log is another, as {few(others, 8)}, set sheet = {others[0]!r} in [file]"
             )
         raise UnreadableError(f"sheet {name!r}{error}{which}") from None
 

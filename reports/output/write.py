@@ -91,8 +91,8 @@ def refuse_link(path: Path, option: str) -> None:
     """Refuse a symbolic link. Raises CrankcheckError that names its target."""
     if path.is_symlink():
         raise CrankcheckError(
-            f"{option} {path}: a link, to {os.path.realpath(path)}; name that itself, or remove "
-            "the link"
+            f"{option} {path}: a link to {os.path.realpath(path)}; name this file itself, or "
+            "remove the link"
         )
 
 

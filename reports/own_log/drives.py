@@ -87,8 +87,8 @@ def _refuse_without_times(log: OwnLog, drive: LogDrive) -> None:
     """Refuse a fit, and the rates of a driver without a constant speed. Raises CrankcheckError."""
     if drive == "fitted":
         raise CrankcheckError(
-            f"--drive fitted: {log.source} has no column of times, which a speed takes; leave "
-            "--drive out, and it is judged at its angles of the driver"
+            f"--drive fitted: {log.source} has no column of times, which a speed needs; leave "
+            "--drive out to judge it at its angles of the driver"
         )
     rates = [each.channel.column for each in log.readings if each.channel.kind.order]
     if rates and not isinstance(log.scene.driver.law, ConstantSpeed):
@@ -166,7 +166,8 @@ def _of_places(log: OwnLog) -> DriveFit:
     places = [each for each in log.readings if each.channel.kind.order == 0]
     if not places:
         raise CrankcheckError(
-            f"--drive fitted: {log.source} has no places to fit to, rates alone; use --drive scene"
+            f"--drive fitted: {log.source} has only rates, and no places to fit to; use --drive "
+            "scene"
         )
     law = log.scene.driver.law
     assert isinstance(law, ConstantSpeed)

@@ -171,7 +171,7 @@ def _refuse_step(log: OwnLog, step_s: float) -> None:
         raise CrankcheckError(f"--step {step_s:g}: give a time above 0, in seconds")
     if step_s and not log.timed:
         raise CrankcheckError(
-            f"--step {step_s:g}: {log.source} has no times, which a step takes; give --target"
+            f"--step {step_s:g}: {log.source} has no times, which a step needs; give --target"
         )
     shortest = float(np.min(np.diff(log.time_s)))
     if step_s > shortest * (1.0 + 1e-3) and step_s > 0.0:

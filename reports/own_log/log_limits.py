@@ -95,9 +95,9 @@ def by_quantity(
     lacking_ = [name for name in judged if name not in told]
     if lacking_:
         raise CrankcheckError(
-            f"no limit for {', '.join(lacking_)}: no step of a log is known, so no budget follows "
-            "from one; give --target 1e-3 (or one each, such as --target angle=1e-3), or --step "
-            "with the step of the solver in seconds"
+            f"no limit for {', '.join(lacking_)}: the step of the log is unknown, so no budget "
+            "follows from it; give --target 1e-3 (or one each, such as --target angle=1e-3), "
+            "or --step with the step of the solver in seconds"
         )
     return {name: told.get(name, Limit(math.inf, "none")) for name in numbers}
 

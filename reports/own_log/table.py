@@ -59,13 +59,13 @@ def cause_text(cause: Cause) -> str:
     with any text as names."""
     text = cut(harmless(cause.text), ROOM)
     if cause.correction:
-        return f"{text}; if the log means it so, in its [[channel]] of the map: " + _keys(
+        return f"{text}; if this is meant, set in its [[channel]] of the map: " + _keys(
             cause.correction
         )
     each = [f"{column_text(column)}: {_keys(keys)}" for column, keys in cause.of_column.items()]
     if not any(cause.of_column.values()):
         return text
-    return f"{text}; if the log means it so, in their [[channel]] of the map: {'; '.join(each)}"
+    return f"{text}; if this is meant, set in their [[channel]] of the map: {'; '.join(each)}"
 
 
 def _keys(correction: Mapping[str, object]) -> str:
@@ -123,7 +123,7 @@ def rest_text(judged: JudgedLog) -> str:
     worst = max(left, key=lambda row: row.taken)
     count_ = count(len(left), "more error")
     return (
-        f"{count_} within, of rates at the start, or differenced: {worst.what}, takes most, "
+        f"{count_} within, of rates at the start or differenced; the largest: {worst.what}, "
         f"{taken_text(worst.taken)} of its limit"
     )
 
@@ -160,7 +160,7 @@ def not_judged_lines(judged: JudgedLog) -> list[str]:
     there = aside(judged.log, judged.not_judged)
     lacking = [each for each in judged.not_judged if each not in there]
     why = f": {why_aside(judged.drive, judged.scene.driver.name)}"
-    parts = ((there, why), (lacking, ", which the log has not"))
+    parts = ((there, why), (lacking, ", which the log lacks"))
     return [f"{_by_quantity(names)}{reason}" for names, reason in parts if names]
 
 

@@ -100,9 +100,9 @@ def read(request: ModelRequest, limits: Limits) -> ModelAccount:
         return account
     if isinstance(account.error, CrankcheckError) and NO_MEMORY not in str(account.error):
         raise account.error
-    how = "came to no end" if account.status == "timeout" else account.status
+    how = "did not finish" if account.status == "timeout" else account.status
     raise CrankcheckError(
-        f"{request.path}: reading it {how}: {account.reason}; it may take --limit-s "
+        f"{request.path}: reading it {how}: {account.reason}; it is allowed --limit-s "
         f"{limits.time_s:g} s and --memory-gb {limits.memory_gb:g}"
     )
 

@@ -55,8 +55,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> tuple[Scene, list[str]]:
     unknown = [key for key in request.branch if key not in choices]
     if unknown:
         raise CrankcheckError(
-            f"--branch {unknown[0]}: it chooses between no two assemblies; it has "
-            f"{', '.join(choices) or 'none'}"
+            f"--branch {unknown[0]}: it separates no assemblies; use {', '.join(choices) or 'none'}"
         )
     left = [key for key in choices if key not in request.branch]
     if len(left) > MOST_CHOICES:
@@ -207,11 +206,11 @@ def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
         f"{math.degrees(low):.4g} to {math.degrees(high):.4g} deg" for low, high in spans
     )
     inside = next((span for span in spans if span[0] <= start <= span[1]), None)
-    cure = "start in between with --start, and take less of a turn with --turns"
+    cure = "start in between with --start, and use less of a turn with --turns"
     if inside is not None:
         left = (inside[1] if way > 0.0 else inside[0]) - start
         most = math.floor(1e3 * abs(left) / math.tau) / 1e3
-        cure = f"take less of a turn, --turns {most:g} at most, or another --start"
+        cure = f"use less of a turn, --turns {most:g} at most, or another --start"
     return (
         f"joint {request.joint} would turn from {math.degrees(start):.4g} to "
         f"{math.degrees(end):.4g} deg, and reaches {reaches}, where the loops close; {cure}"

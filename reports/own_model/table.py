@@ -25,7 +25,7 @@ from sim.registry.own_models import FAR_PIN
 OPEN = 1e-9
 """Least opening of a joint that is reported, over the longest link."""
 SHOWN = 6
-NO_HELP = "no settings that were tried here help"
+NO_HELP = "none of the tried settings helps"
 EACH = 3
 """Number of disturbances of a kind that are listed on a terminal."""
 
@@ -67,9 +67,9 @@ def _drive_text(account: ModelAccount) -> str:
     based = any(note.startswith("base:") for note in account.notes)
     on = f"that hinge{', and at rest on the joints of the base' * based}"
     return (
-        f"{request.joint} at {request.speed_rad_s:g} rad/s, {turns} from {start}, by a "
-        f"flywheel on {on}, set at run time, by whose ratio the solver's tolerance is divided; "
-        "nothing else is changed"
+        f"{request.joint} at {request.speed_rad_s:g} rad/s, {turns} from {start}, by a flywheel "
+        f"on {on}, set at run time, whose ratio divides the solver's tolerance; nothing else is "
+        "changed"
     )
 
 
@@ -235,7 +235,7 @@ def step_heads(judged: JudgedModel) -> list[str]:
 def recommended_head(judged: JudgedModel) -> str:
     """Return the sentence before the recommended settings, if there are any."""
     if not judged.account.helps:
-        return f"{NO_HELP.capitalize()}: stiff loops run no better, nor with fourth-order steps."
+        return f"{NO_HELP.capitalize()}: neither stiff loops nor fourth-order steps do."
     if not judged.patch:
         return "The file has the recommended settings already."
     return f"Recommended{', as a diff of the file' * is_diff(judged.patch)}:"

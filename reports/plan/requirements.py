@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 MOST_LETTERS = 40
 """Most letters of the name of a scene (`models.files.schema.NAME`)."""
 LOOKS = 721
-"""Positions of the first look at a period; the run itself looks at every sample."""
+"""Positions of the first check of a period; the run itself checks every sample."""
 PROFILES = ("tuned", "as-shipped")
 EVERY_ENGINE = "all"
 
@@ -56,7 +56,7 @@ def chosen_scenes(
         (check or refuse_unfollowed)(scene)
         if scenes.setdefault(scene.name, scene) != scene:
             raise CrankcheckError(
-                f"scene {name!r}: a second scene called {scene.name}, not the same; rename one"
+                f"scene {name!r}: two different scenes have the name {scene.name}; rename one"
             )
     return list(scenes.values())
 
@@ -404,6 +404,7 @@ def shortened_note(scene: Scene, lasts_s: float) -> str:
     if few_swings_s(scene) >= whole_s or not math.isclose(lasts_s, few_swings_s(scene)):
         return ""
     return (
-        f"{scene.name}: free motion for {lasts_s:.3g} s of its {whole_s:.4g} s, {SWINGS} swings of "
-        "its slowest elastic link; --duration gives more, and the reference takes as much longer"
+        f"{scene.name}: free motion for {lasts_s:.3g} s of its {whole_s:.4g} s, {SWINGS} swings "
+        "of its slowest elastic link; --duration gives more, and takes longer by the same "
+        "factor"
     )

@@ -23,7 +23,7 @@ SINGULAR = 1e-6
 GRID = 721
 ZOOMS = 5
 FINER = 65
-"""Looks at a range, and at the neighbourhood of every smallest sine in each zoom."""
+"""Samples of a range, and of the neighbourhood of every smallest sine in each zoom."""
 SHOWN = 4
 SAME_RAD = 1e-3
 """Distance to a change point of its dyad below which a singular position is that change point."""

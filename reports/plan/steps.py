@@ -146,7 +146,7 @@ RESOLUTION = 1.01
 FINER = (math.sqrt(2.0), 2.0)
 """Factors of the finer steps that have to reach the target as well."""
 FALL = 0.8
-"""Share of an error, at half the step, above which it does not fall."""
+"""Share of an error, at half the step, above which it does not shrink."""
 LEAP = 8.0
 """Largest growth of the number of steps from one run to the next."""
 

@@ -182,7 +182,7 @@ DIGITS = 100
 """Most characters of a number. A number to the base 60 takes time with the square of them."""
 TOO_MANY = f"more than {MOST_VALUES} values, those of an alias counted each time; leave some out"
 TOO_DEEP = f"values nested more than {DEEPEST} deep; a study nests them 5 deep"
-IN_ITSELF = "an alias for what it stands in; name something before it"
+IN_ITSELF = "an alias of the part that holds it; refer to an earlier part"
 KINDS = ("bool", "float", "int", "map", "merge", "null", "seq", "str")
 
 

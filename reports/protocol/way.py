@@ -54,7 +54,7 @@ class ResultKind:
 
 
 WAYS = ("free_elastic", "elastic", "free", "driven")
-"""The kinds, the more special first: a scene is of the first that takes it. A name with a dot is
+"""The kinds, special ones first: a scene belongs to the first that takes it. A name with a dot is
 that of a package elsewhere."""
 
 

@@ -27,8 +27,8 @@ OPEN_SHARE = 3e-4
 the largest of them no ratio of masses makes it more (0.001 to 1000 times the mass of any link)."""
 TAKEN_UP = Tolerance(
     "Second order: forces follow accelerations, at places with the error of a step, and a dyad "
-    "enlarges them by 1/sine of its transmission angle. Further parts: the share of a force that "
-    "soft constraints leave open, and the error of a load at a slider that is off.",
+    "enlarges them by 1/sine of its transmission angle. Further parts: the share of a force "
+    "that soft constraints leave open, and the error of a load at a displaced slider.",
     cap=0.2,  # a fifth of the largest force; twice the worst at 90 steps a turn
     coefficient=12.0,
     power=1.0,
@@ -41,8 +41,8 @@ TAKEN_UP = Tolerance(
 )
 
 FREE_FORCE = Tolerance(
-    "As the phase, times the rates of the accelerations, and the share of a force that soft "
-    "constraints leave open.",
+    "That of the phase, times the rates of the accelerations, and the share of a force that "
+    "soft constraints leave open.",
     cap=0.2,
     coefficient=6.0,
     power=2.0,
@@ -176,8 +176,8 @@ def _force(
 
 
 CURE = (
-    "Shorten the step; look at which instant the engine's forces belong to, and in whose frame "
-    "they are: `crankcheck recipe forces --engine NAME` reads them right."
+    "Shorten the step; check the instant and the frame of the engine's forces: `crankcheck "
+    "recipe forces --engine NAME` reads them correctly."
 )
 REACTION = _force(
     "reaction",
@@ -246,7 +246,7 @@ TORQUE = _force(
         "torque",
         replace(
             TAKEN_UP,
-            reason="As of reactions, times their arms.",
+            reason="That of reactions, times their arms.",
             slope="torque",
         ),
         diagram="driving torque",

@@ -49,16 +49,16 @@ PHASE = Quantity(
         Criterion(
             "CC127",
             "phase",
-            "In free motion a mechanism that is a little too fast or too slow drifts ever further "
-            "off. The driver's angle is compared with the integrated one at the same time, over "
-            "the sensitivity of the motion: the growth of a small change of its start.",
-            "Shorten the step (--dt), or take an integrator of higher order, and look for damping "
-            "in the joints.",
+            "In free motion a mechanism that is slightly too fast or too slow drifts away. The "
+            "driver's angle is compared with the integrated one at the same time, over the "
+            "sensitivity of the motion: the growth of a small change of its start.",
+            "Shorten the step (--dt), or use an integrator of higher order, and look for "
+            "damping in the joints.",
             short="phase",
             diagram="phase: the driver's angle over the sensitivity",
             tolerance=Tolerance(
-                "Second order, for most of the time: a loss of energy makes an error of phase that "
-                "grows with the square of time, and the sensitivity with time alone.",
+                "Second order for most of the time: a loss of energy makes an error of phase "
+                "that grows with the square of time, and the sensitivity grows only with time.",
                 cap=0.1,  # IFToMM's class of low precision, whatever the step
                 coefficient=6.0,
                 power=1.0,
@@ -130,14 +130,14 @@ ENERGY = Quantity(
             "Drift of the engine's energy, less the work of loads and dampers: the mean over the "
             "last window less that over the first, as a share of the largest kinetic energy. An "
             "offset that comes and goes with the motion is no drift.",
-            "Shorten the step (--dt); look for damping or driving of the bodies that the scene has "
-            "not.",
+            "Shorten the step (--dt); look for damping or driving of bodies that is not in the "
+            "scene.",
             short="drift",
             diagram="drift of energy",
             tolerance=Tolerance(
-                "Joints closed by impulses, or by springs with dampers, are late by the gap of a "
-                "step: its work changes the energy, of second order, and a part is lost at every "
-                "step, of third.",
+                "Joints closed by impulses, or by springs with dampers, lag by the gap of a "
+                "step: its work changes the energy with second order, and a part is lost at "
+                "every step with third order.",
                 cap=0.1,
                 arc=4.0,
                 late=0.5,
@@ -155,7 +155,7 @@ MOMENTUM = Quantity(
             "momentum drift",
             "Without weight and loads, a mechanism that is pinned to the ground at one point keeps "
             "its angular momentum about that point.",
-            "Look for damping in the pin, or for outside loads that the scene has not.",
+            "Look for damping in the pin, or for outside loads that are not in the scene.",
             short="mom",
             tolerance=Tolerance(
                 "Pins exert no moment about themselves, at any step: rounding, and the gap of a "
@@ -212,8 +212,8 @@ BENT = Tolerance(
     bends=True,
 )
 CURE = (
-    "Shorten the step (--steps-per-turn); look at the rates of the springs between segments, and "
-    "for other bending or damping."
+    "Shorten the step (--steps-per-turn); check the rates of the springs between segments, and "
+    "look for other bending or damping."
 )
 
 
@@ -269,7 +269,7 @@ EXTENSION = _elastic(
         CURE,
         short="ext",
         tolerance=Tolerance(
-            "Of places: the pins are off by step^2 at the curvature, each.",
+            "That of places: each pin has an error of step^2 at the curvature.",
             cap=2e-2,
             coefficient=2.0,
             power=1.0,

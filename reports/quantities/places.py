@@ -13,9 +13,9 @@ from reports.quantities import quantity
 
 EPSILON = float(np.finfo(np.float64).eps)
 WITHIN_A_STEP = quantity.Tolerance(
-    "A step moves the pins along tangents, which leaves a gap of step^2/2 times the curvature to "
-    "close; a dyad enlarges it by 1/sine of its transmission angle. To close it an engine moves "
-    "its bodies by the jolt times step^2; twice that if it is more.",
+    "A step moves the pins along tangents, which leaves a gap of step^2/2 times the curvature "
+    "to close; a dyad enlarges it by 1/sine of its transmission angle. To close it an engine "
+    "moves its bodies by the jolt times step^2; twice that if it is larger.",
     cap=2e-2,  # about a degree; ten times the worst at 180 steps a turn
     coefficient=1.0,
     power=1.0,
@@ -25,7 +25,7 @@ WITHIN_A_STEP = quantity.Tolerance(
 
 
 FREE_PLACE = quantity.Tolerance(
-    "As the phase, times the rates of the places, and the gap of a step.",
+    "That of the phase, times the rates of the places, and the gap of a step.",
     cap=0.1,
     coefficient=9.0,
     power=1.0,
@@ -170,8 +170,8 @@ GAP = quantity.Quantity(
             diagram="closure: the widest gap",
             tolerance=replace(
                 WITHIN_A_STEP,
-                reason="At most the gap of a step, step^2/2 times the curvature, may be open, or "
-                "the jolt that closes it, if that is more.",
+                reason="The gap of a step, step^2/2 times the curvature, or the jolt that closes "
+                "it, if that is larger.",
                 conditioned=False,
             ),
             free_motion=replace(WITHIN_A_STEP, conditioned=False),
@@ -211,7 +211,7 @@ TWICE_DERIVED = quantity.Tolerance(
     parts=True,
 )
 FREE_RATE = quantity.Tolerance(
-    "As the phase, times the rates of the velocities.",
+    "That of the phase, times the rates of the velocities.",
     cap=0.2,
     coefficient=14.0,
     power=1.5,

@@ -31,7 +31,7 @@ from reports.workers.progress import progress_bar
 from sim.registry import engine
 
 USUAL_SCENES = ("fourbar-lecture-1", "slider-crank-central")
-"""Scenes that advice is on where none is named: a loop of pins, and a loop with a slider."""
+"""Default scenes of the advice: a loop of pins, and a loop with a slider."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +42,15 @@ class AdviseRequest:
     speed: Annotated[float, option("Speed of the driver; clockwise is negative.", "RAD_S")]
     target: Annotated[float, "Error to reach, as a pure number: rad, lengths over L."]
     scenes: Annotated[
-        Sequence[str], argument("SCENE", "Shipped names or scene files; two usual ones if none.")
+        Sequence[str], argument("SCENE", "Shipped names or scene files; default: two common ones.")
     ] = ()
     engines: Engines = ()
     study: Annotated[
-        Path | None, option("Folder of sweep -o: its runs are used as they are.", "DIR")
+        Path | None, option("Folder written by sweep -o, whose runs are used.", "DIR")
     ] = None
     turns: Annotated[float, "Turns of the driver in a run."] = 10.0
     jobs: Jobs = 0
-    json: Annotated[Path | None, "Write all of it as JSON."] = None
+    json: Annotated[Path | None, "Write the result as JSON."] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0 where some settings reach the target, 1 where none

@@ -69,7 +69,7 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
             raise CrankcheckError("--map: a motion has no columns; leave --map out")
         if isinstance(log, Solution) and log.scene != scene:
             raise CrankcheckError(
-                f"the motion is of {log.scene.name}, not of {scene.name}; give the scene of both"
+                f"the motion is of {log.scene.name}, the scene is {scene.name}; give one for both"
             )
         return log_of_motion(scene, log)
     from reports.logs.columns import columns_of
@@ -123,7 +123,9 @@ def _refuse_other_scene(scene: Scene, run: Run) -> None:
     mechanism = run.mechanism if isinstance(run, Simulation) else None
     if run.scene != scene.name or mechanism not in (None, scene_of_run(scene, run)):
         other = f"another {run.scene}" if run.scene == scene.name else run.scene
-        raise CrankcheckError(f"the run is of {other}, not of {scene.name}; give the scene of both")
+        raise CrankcheckError(
+            f"the run is of {other}, the scene is {scene.name}; give one for both"
+        )
     if run.drive not in way_of(scene).drives:
         raise CrankcheckError(
             f"the run of {run.scene} has drive {run.drive}, and the scene is in free motion; run "
@@ -161,7 +163,7 @@ def _frame_of(log: object) -> tuple[pd.DataFrame, str]:
             return pd.DataFrame(columns), "the log"
         except (TypeError, ValueError) as error:
             raise CrankcheckError(
-                f"the log: found columns that make no table ({error}); give each as many numbers"
+                f"the log: its columns make no table ({error}); give every column as many numbers"
             ) from None
     cure = "give the path of a file, a pandas frame, a dict of columns, a motion or a run"
     raise wrong_kind("log", log, cure)

@@ -156,7 +156,7 @@ def tolerances_of(tolerance: object, option: str) -> dict[str, float]:
     for name, number in tolerance.items():
         if name not in EVERY:
             hint = suggestion(str(name), EVERY, "use one of", 2, 0.6)
-            raise CrankcheckError(f"{option} {shown(name)}: it is no quantity; {hint}")
+            raise CrankcheckError(f"{option} {shown(name)}: not a quantity; {hint}")
         unit = "pure numbers: rad, lengths over that of the longest link"
         found[name] = positive(f"{option} {name}", number, unit)
     return found

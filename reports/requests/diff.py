@@ -40,17 +40,15 @@ class DiffRequest:
     any case.
     """
 
-    old: Annotated[Path, argument("OLD", "Folder of sweep -o or verify -o.")]
+    old: Annotated[Path, argument("OLD", "Folder written by sweep -o or verify -o.")]
     new: Annotated[Path, argument("NEW", "Folder to compare with it.")]
-    factor: Annotated[float, "Growth of an error that is no fault yet."] = 1.1
+    factor: Annotated[float, "Largest growth of an error that passes, as a factor."] = 1.1
     strict: Annotated[bool, "Exit 1 for missing cells and changed scenes too."] = False
-    old_version: Annotated[str | None, "Engine version to take of OLD, where it holds several."] = (
-        None
-    )
-    new_version: Annotated[str | None, "The same of NEW."] = None
+    old_version: Annotated[str | None, "Engine version in OLD, if it holds several."] = None
+    new_version: Annotated[str | None, "Engine version in NEW, if it holds several."] = None
     format: TextFormat = "text"
     output: Annotated[Path | None, output_option("Write Markdown, for a pull request.")] = None
-    junit: Annotated[Path | None, "Write JUnit XML, a case per cell."] = None
+    junit: Annotated[Path | None, "Write JUnit XML, one case per cell."] = None
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code.

@@ -44,9 +44,11 @@ MEMORY_GB = 4.0
 
 @dataclass(frozen=True)
 class EngineCheckRequest:
-    name: Annotated[str, argument("ENGINE", "A name, or one of your own, package.module:ENGINE.")]
+    name: Annotated[
+        str, argument("ENGINE", "A name; of an engine of your own: package.module:ENGINE.")
+    ]
     clauses: Annotated[
-        Sequence[str], option("Clause; may be repeated; all if none.", "--clause ID")
+        Sequence[str], option("Clause; may be repeated; default: all.", "--clause ID")
     ] = ()
     limit_s: Annotated[float, "Longest time for a clause, in seconds."] = 60.0
     jobs: Jobs = 0
@@ -62,7 +64,7 @@ class EngineCheckRequest:
         for clause in self.clauses:
             if clause not in CLAUSES:
                 hint = suggestion(clause, CLAUSES, "use")
-                raise CrankcheckError(f"--clause {clause!r}: there is none of that name; {hint}")
+                raise CrankcheckError(f"--clause {clause!r}: unknown; {hint}")
         clauses = list(dict.fromkeys(self.clauses or CLAUSES))
         called, version = named(self.name, limits)
         with progress_bar(progress, "clauses", len(clauses)) as advance:

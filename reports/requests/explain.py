@@ -39,8 +39,8 @@ HELPS = {
 @dataclass(frozen=True)
 class ExplainRequest:
     what: Annotated[str, argument("WHAT", "A rule (CC110), a clause (EC52), or a scene.")]
-    engine: Annotated[str | None, option("Of a scene: the engine.", "--engine")] = None
-    profile: Annotated[str, option("Of a scene: the settings.", "--profile")] = "tuned"
+    engine: Annotated[str | None, option("Engine that runs the scene.", "--engine")] = None
+    profile: Annotated[str, option("Settings in which it runs.", "--profile")] = "tuned"
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
 
@@ -61,15 +61,15 @@ class ExplainRequest:
                 return []
             near = nearest(name, [*RULES, *CLAUSES]) or nearest(self.what, every_shipped())
             hint = f"did you mean {' or '.join(near)}?" if near else "see `crankcheck scenes`"
-            raise CrankcheckError(f"{cut(self.what)!r}: no rule, no clause, no scene; {hint}")
+            raise CrankcheckError(f"{cut(self.what)!r}: no such rule, clause or scene; {hint}")
         for of_scene in given(self, "engine", "profile", "dt_s", "steps_per_turn"):
-            raise CrankcheckError(f"{of_scene}: {name} is no scene; leave it out")
+            raise CrankcheckError(f"{of_scene}: for a scene, and {name} is none; leave it out")
         of = RULES.get(name) or CLAUSES[name]
         why = CLAUSES[name].why if name in CLAUSES else RULES[name].explanation
         return [(name, of.title), ("why", why), *_limit(name), ("what helps", of.cure)]
 
     def _of_cell(self) -> Iterator[tuple[str, str]]:
-        """Yield the verdict, the error by part, the limit that binds, and what to turn."""
+        """Yield the verdict, the error by part, the limit that binds, and what to change."""
         if self.engine is None:
             raise CrankcheckError(f"--engine is missing: name the one that runs {self.what}")
         steps = self.dt_s, self.steps_per_turn
@@ -99,7 +99,7 @@ class ExplainRequest:
             if own.values.get(name) != each.value
         ]
         if turns:
-            yield "what to turn", "\n".join(turns)
+            yield "what to change", "\n".join(turns)
 
 
 def _limit(name: str) -> list[tuple[str, str]]:

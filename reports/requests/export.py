@@ -58,8 +58,8 @@ class ExportRequest:
         own = under_control(outlined(load_scene(self.scene)))
         if any(not pair.facets for pair in own.cams.values()):
             raise CrankcheckError(
-                f"{own.name}: a program sets a cam as a relation at each step, and a file holds "
-                "one angle only: give the cam's table facets, for a cam by contact"
+                f"{own.name}: MJCF has no relation that follows the law of a cam; give the "
+                "cam's table `facets`, for a cam by contact"
             )
         way = way_of(own)
         scene, start = way.opened(own)
@@ -83,7 +83,7 @@ class ForceRecipeRequest:
         check_file(self.output, "-o", (".py",), inputs=[find_scene(self.scene)])
         if positive("--steps-per-turn", self.steps_per_turn, "steps") > MOST_STEPS:
             raise CrankcheckError(
-                f"--steps-per-turn: found {self.steps_per_turn:g}; the program keeps a line for "
+                f"--steps-per-turn: found {self.steps_per_turn:g}; the program has a line for "
                 f"each step, so give {MOST_STEPS} at most"
             )
         scene = outlined(load_scene(self.scene))
@@ -122,7 +122,7 @@ class ViewRequest:
         option = "view" if headless else "-o"
         check_file(output, option, PICTURES, inputs=[find_scene(self.scene)])
         if self.forces and self.engine:
-            raise CrankcheckError("--forces with --engine: a picture has one of them; leave one")
+            raise CrankcheckError("--forces with --engine: a picture shows one of them; leave one")
         for of_run in given(self, "profile", "magnify") if self.engine is None else ():
             raise CrankcheckError(f"{of_run}: no run is drawn; give --engine as well")
         run = None if self.engine is None else self._run()
@@ -193,4 +193,4 @@ def _groups(scene: Scene) -> str:
 
 def _heading(kind: str) -> str:
     by_name = f"all of them by `{kind}`, as in `crankcheck verify {kind}`"
-    return f"{kind}: {'all of them where no scene is named' if kind == KINEMATICS else by_name}"
+    return f"{kind}: {'all of them by default' if kind == KINEMATICS else by_name}"

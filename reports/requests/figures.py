@@ -38,7 +38,7 @@ Drawn = Callable[[], Figure | None]
 class FiguresRequest(Layout):
     folder: Annotated[Path, argument("DIR", "Folder of a sweep.")]
     output: Annotated[Path, output_option("Folder for the figures.")]
-    scene: Annotated[Sequence[str], "Scene to draw; may be repeated; all if none."] = ()
+    scene: Annotated[Sequence[str], "Scene to draw; may be repeated; default: all."] = ()
     only: Annotated[Sequence[str], option("Figure to draw; may be repeated.", "FIGURE")] = ()
 
     @laid_out
@@ -84,8 +84,8 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
     chosen = _chosen(scenes, report.scenes, "--scene", "scene")
     if strange := next((scene for scene in chosen if not re.fullmatch(NAME, scene)), None):
         raise CrankcheckError(
-            f"scene {strange!r} of the store: not the name of a scene, and so not of a file "
-            "either; the store was changed by hand: run `crankcheck sweep` again"
+            f"scene {strange!r} of the store: not a valid name of a scene, so it can name no "
+            "file; the store was changed by hand: run `crankcheck sweep` again"
         )
     figures: dict[str, Drawn] = {}
     for name in names:
@@ -100,8 +100,8 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
         drives = {drive for name in names for drive in FIGURES[name].drives}
         raise CrankcheckError(
             f"--only {', '.join(names)}: drawn over all scenes, or for "
-            f"{' or '.join(sorted(drives))} scenes, which are not chosen; leave out --scene or "
-            "--only"
+            f"{' or '.join(sorted(drives))} scenes, and --scene chose none of these; leave out "
+            "--scene or --only"
         )
     return figures
 
@@ -131,5 +131,5 @@ def _chosen(asked: Sequence[str], names: Iterable[str], option: str, noun: str) 
     for name in asked:
         if name not in every:
             hint = suggestion(name, every, "there are", 2)
-            raise CrankcheckError(f"{option} {name}: no such {noun} here; {hint}")
+            raise CrankcheckError(f"{option} {name}: found no such {noun}; {hint}")
     return list(dict.fromkeys(asked)) or every

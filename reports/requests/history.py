@@ -35,7 +35,7 @@ class HistoryRequest:
     engine: Annotated[str, argument("ENGINE", f"Engine, such as {FIRST}.")]
     versions: Annotated[Sequence[str], argument("VERSION", "Released versions of it.")]
     scenes: Annotated[
-        Sequence[str], option("Shipped name or file; may be repeated; all if none.", "--scene")
+        Sequence[str], option("Shipped name or file; may be repeated; default: all.", "--scene")
     ] = ()
     profiles: Annotated[
         Sequence[str], option("Profile; default: tuned and as-shipped.", "--profile")
@@ -43,13 +43,14 @@ class HistoryRequest:
     dt_s: options.StepS = None
     steps_per_turn: options.StepsPerTurn = None
     turns: Annotated[float | None, "Turns of the driver (default 2)."] = None
-    free: Annotated[bool, "Free motion; all free scenes if none is named."] = False
+    free: Annotated[bool, "Free motion; default: all free scenes."] = False
     duration_s: options.Duration = None
     jobs: options.Jobs = 0
-    cache: Annotated[Path | None, option("Where environments and results are kept.", "DIR")] = None
-    again: Annotated[bool, "Verify again; environments are kept."] = False
+    cache: Annotated[Path | None, option("Folder for environments and results.", "DIR")] = None
+    again: Annotated[bool, "Verify again, in the same environments."] = False
     folder: Annotated[
-        Path | None, option("Write tables and each version's verification.", "-o --output DIR")
+        Path | None,
+        option("Write the tables, and the verification of each version.", "-o --output DIR"),
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
@@ -98,8 +99,8 @@ def _refuse_own(name: str) -> None:
     if name not in ENGINES:
         own = engine(name).name
         raise CrankcheckError(
-            f"history {own}: it has released versions of {', '.join(ENGINES)} alone; keep `verify "
-            f"--engine {name} -o DIR` of each version of yours, and compare two with `diff`"
+            f"history {own}: only {', '.join(ENGINES)} have released versions; write `verify "
+            f"--engine {name} -o DIR` with each version of yours, and compare two with `diff`"
         )
 
 

@@ -73,13 +73,13 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
                 raise fault from None
             text, lacks = blank
             write(path, text)
-            return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
+            return f"the columns of {log}; fill in {lacks}, then judge with --map {path}"
         write(path, text)
         return f"columns of {log}, as understood{''.join(entries.values())}"
 
 
 ENTRY = re.compile(r"(\w+) = '([^']+)' in \[(file|time)\]")
-"""An entry of a map in the words of a refusal."""
+"""An entry of a map, as a refusal prints it."""
 
 
 def contents(judged: JudgedLog, facts: Mapping[str, str]) -> dict[str, Callable[[], str]]:
@@ -252,8 +252,8 @@ def judged(
         way = way_of(scene)
         if log.steps < way.least_judged:  # its drift and order would be those of its start
             raise CrankcheckError(
-                f"{scene.name}: the run has {log.steps} steps; free motion is judged from "
-                f"{way.least_judged} on: take shorter ones, or a longer time"
+                f"{scene.name}: the run has {log.steps} steps, and a judgement of free motion "
+                f"needs {way.least_judged}; use a shorter step, or a longer time"
             )
         named = limits if every is None else {name: limits.get(name, every) for name in way.targets}
         return verdict_of_run(scene, log, named)
@@ -294,11 +294,11 @@ def target_of(target: Target) -> dict[str, float]:
 class JudgeRequest:
     scene: options.SceneName
     log: Annotated[Path, argument("LOG", "Your log: .csv, .tsv, .txt, .parquet or .xlsx.")]
-    map: Annotated[Path | None, option("TOML that says what columns mean.", "FILE")] = None
-    write_map: Annotated[Path | None, option("Write the map as understood, and end.", "FILE")] = (
-        None
-    )
-    drive: Annotated[str, "scene, fitted (speed and start), or logged (geometry at its angle)."] = (
+    map: Annotated[Path | None, option("TOML with the meaning of the columns.", "FILE")] = None
+    write_map: Annotated[
+        Path | None, option("Write the map as understood, without a judgement.", "FILE")
+    ] = None
+    drive: Annotated[str, "scene; fitted: its speed and start; logged: geometry at its angle."] = (
         "scene"
     )
     step_s: Annotated[
@@ -306,17 +306,17 @@ class JudgeRequest:
     ] = None
     target: Annotated[
         Sequence[str],
-        option("Largest pure error, such as 1e-3 or angle=1e-4; repeatable.", "NUMBER"),
+        option("Largest pure error, such as 1e-3 or angle=1e-4; may be repeated.", "NUMBER"),
     ] = ()
     require: Annotated[
-        Sequence[str], option("Quantity or body that has to be in the log.", "NAME")
+        Sequence[str], option("Quantity or body that the log must have.", "NAME")
     ] = ()
     format: options.TextFormat = "text"
     json: Annotated[Path | None, "Write errors and findings as JSON."] = None
-    junit: Annotated[Path | None, "Write JUnit XML, a case per error."] = None
+    junit: Annotated[Path | None, "Write JUnit XML, one case per error."] = None
     output: Annotated[Path | None, output_option("Write a page, .html.")] = None
-    free: Annotated[bool, "The log is of the driven scene in free motion from time 0 on."] = False
-    forces: Annotated[bool, "Judge its columns of forces and torque as well."] = False
+    free: Annotated[bool, "The log shows the driven scene released at time 0."] = False
+    forces: Annotated[bool, "Also judge its columns of forces and torque."] = False
     segments: options.SegmentCount = None
     springs: options.SpringKind = None
     known: options.KnownPath = None

@@ -21,7 +21,7 @@ def seconds(text: str) -> float:
         return float(number) / float(parts) if slash else float(number)
     except (ValueError, ZeroDivisionError):
         raise typer.BadParameter(
-            f"{shown(text)} is no number of seconds; write it like 0.02, or 1/60"
+            f"{shown(text)} is not a number of seconds; write it like 0.02, or 1/60"
         ) from None
 
 
@@ -61,29 +61,29 @@ Engines = Annotated[Sequence[str], option("Engine, or all; may be repeated.", "-
 StepS = Annotated[float | None, option("Time step, such as 1/60.", "--dt SECONDS", parser=seconds)]
 StepsPerTurn = Annotated[float | None, "Steps in a turn, in place of --dt (default 720)."]
 Duration = Annotated[
-    float | None, option("Of free motion; default: the scene's.", "--duration SECONDS")
+    float | None, option("Duration of free motion; default: the scene's.", "--duration SECONDS")
 ]
-Forces = Annotated[bool, option("Reactions, moments and driving torque as well.", "--forces")]
+Forces = Annotated[bool, option("Also compare reactions, moments and driving torque.", "--forces")]
 SegmentCount = Annotated[
-    int | None, option("Of each elastic link in an engine (default 16).", "--segments N")
+    int | None, option("Segments of each elastic link in an engine (default 16).", "--segments N")
 ]
 SpringKind = Annotated[
     str | None,
     option(
-        "Between segments: plain (default), corrected for the sag; beam: an engine's own.",
+        "Springs between segments: plain (default), corrected for the sag; beam: the engine's own.",
         "--springs",
     ),
 ]
 Facets = Annotated[
-    int | None, option("Cams by contact, of so many facets; default: as the scene says.", "N")
+    int | None, option("Cams by contact, with so many facets; default: the scene's.", "N")
 ]
 KnownPath = Annotated[
     Path | None, option("Known failures, as TOML; default: the shipped ones.", "FILE")
 ]
 WriteKnown = Annotated[Path | None, "Write the failures of this run as known ones, as TOML."]
-StrictKnown = Annotated[bool, "Exit 1 where a known failure is right by now."]
+StrictKnown = Annotated[bool, "Exit 1 if a known failure passes now."]
 Jobs = Annotated[int, option("Processes; 0: one per processor.", min=0, max=1024)]
-TextFormat = Annotated[Literal["text", "md"], option("What is printed.", "text|md")]
+TextFormat = Annotated[Literal["text", "md"], option("Format of the printed text.", "text|md")]
 PaperSize = Annotated[str, option("A5, A4, A3, A2, or WIDTHxHEIGHT in mm.", "SIZE")]
 
 
@@ -126,7 +126,7 @@ class SolveOptions(Layout):
     scene: SceneName
     at_deg: Annotated[float | None, option("One position: the driver's angle.", "DEG")] = None
     at_m: Annotated[
-        float | None, option("One position: the displacement of a slider that drives.", "M")
+        float | None, option("One position: the displacement of a driving slider.", "M")
     ] = None
     turns: Annotated[float | None, "A motion over so many turns (default 1)."] = None
     steps_per_turn: Annotated[int | None, "Samples in a turn (default 12, in a file 360)."] = None
@@ -134,21 +134,21 @@ class SolveOptions(Layout):
         Path | None, output_option("Write .csv, .parquet or .xlsx, or a page, .html.")
     ] = None
     duration: Annotated[
-        float | None, option("Free motion: for how long (default the scene's own).", "S")
+        float | None, option("Free motion: duration (default the scene's).", "S")
     ] = None
     steps: Annotated[
-        int | None, option("Free motion: samples in it (default 12, in a file 1000).", "N")
+        int | None, option("Free motion: samples (default 12, in a file 1000).", "N")
     ] = None
     clockwise: Annotated[bool, "With --at-deg: the driver turning clockwise there."] = False
     along: Annotated[
-        Sequence[str], option("Stroke of a point along a direction; repeatable.", "POINT:DEG")
+        Sequence[str], option("Stroke of a point along a direction; may be repeated.", "POINT:DEG")
     ] = ()
-    forces: Annotated[bool, "The reactions and, of a driver, its torque as well."] = False
+    forces: Annotated[bool, "Also print the reactions, and the torque of a driver."] = False
     figures: Annotated[
         Path | None,
         option(
-            "With --forces: draw them over a turn; or a free motion (with --forces its reactions "
-            "too), or elastic links; as SVG and PDF.",
+            "Draw as SVG and PDF: with --forces the forces over a turn; a free motion (with "
+            "--forces its reactions too); or elastic links.",
             "DIR",
         ),
     ] = None
@@ -157,14 +157,14 @@ class SolveOptions(Layout):
     elements: Annotated[int | None, option("Elastic links: beam elements of each.", "N")] = None
     shape: Annotated[
         str | None,
-        "Elastic links start periodic, quasi-static or straight (default the scene's own).",
+        "Elastic links start periodic, quasi-static or straight (default the scene's).",
     ] = None
     linear: Annotated[bool, "Elastic links: without the shortening of bent links."] = False
     family: Annotated[
         str | None,
         option(
-            "With -o FILE.xlsx, .html, .svg or .pdf: mechanisms that differ in a number, such "
-            "as a length.",
+            "With -o FILE.xlsx, .html, .svg or .pdf: variants of the mechanism that differ in a "
+            "number, such as a length.",
             "NAME=A,B,...",
         ),
     ] = None
@@ -188,12 +188,12 @@ class VerifyOptions:
 
     answered_by: ClassVar[str] = "requests.verify:VerifyRequest"
     scenes: Annotated[
-        Sequence[str], argument("SCENE", "Shipped names or scene files; all if none.")
+        Sequence[str], argument("SCENE", "Shipped names or scene files; default: all.")
     ] = ()
     engines: Engines = ()
     profiles: Annotated[
         Sequence[str],
-        option("Profile, gated; default: tuned gated, as-shipped shown.", "--profile"),
+        option("Profile to gate; default: tuned, with as-shipped shown beside it.", "--profile"),
     ] = ()
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
@@ -217,14 +217,14 @@ class VerifyOptions:
     csv: Annotated[Path | None, "Write the cells as CSV."] = None
     json: Annotated[Path | None, "Write cells and findings as JSON."] = None
     folder: Annotated[
-        Path | None, output_option("Write all of them into a folder, or a page, .html.")
+        Path | None, output_option("Write all of these into a folder, or a page, .html.")
     ] = None
     baseline: Annotated[
         Path | None, option("Folder of an earlier run; exit 1 when worse than it.", "DIR")
     ] = None
-    factor: Annotated[float, "Growth over the baseline that is no fault yet."] = 1.1
+    factor: Annotated[float, "Largest growth over the baseline that passes, as a factor."] = 1.1
     forces: Forces = False
-    free: Annotated[bool, "Free motion; all free scenes if none is named."] = False
+    free: Annotated[bool, "Free motion; default: all free scenes."] = False
     duration_s: Duration = None
     segments: SegmentCount = None
     springs: SpringKind = None
@@ -238,20 +238,21 @@ class VerifyOptions:
         of_model("A MuJoCo model, run as it is; needs --drive JOINT and --speed.", "FILE"),
     ] = None
     speed_rad_s: Annotated[
-        float | None, of_model("Of the driven joint; below 0 the other way.", "--speed RAD/S")
+        float | None,
+        of_model("Speed of the driven joint; may be below 0.", "--speed RAD/S"),
     ] = None
     key: Annotated[
         str | None, of_model("Keyframe to start from; default: the pose as drawn.", "NAME")
     ] = None
     start_deg: Annotated[
-        float | None, of_model("What the driven joint reads at the start.", "--start DEG")
+        float | None, of_model("Coordinate of the driven joint at the start.", "--start DEG")
     ] = None
     branch: Annotated[
         Sequence[str],
-        of_model("Assembly, where the pose fits two; default: the nearest.", "NAME=1|-1"),
+        of_model("Branch, if the pose fits two; default: the nearest.", "NAME=1|-1"),
     ] = ()
     write_scene: Annotated[
-        Path | None, of_model("Write the scene that it was read as, as TOML.", "FILE")
+        Path | None, of_model("Write the scene read from the model, as TOML.", "FILE")
     ] = None
     limit_s: Annotated[float, of_model("Time limit of each line.", "SECONDS")] = 60.0
     memory_gb: Annotated[float, of_model("Memory limit of each line.", "GB")] = 2.0

@@ -49,7 +49,7 @@ def report_of(folder: Path, format: Format) -> Made:
     if hard and not swept:
         if format == "md":
             raise CrankcheckError(
-                f"{folder}: hard cases alone, which have a page and no Markdown; leave out --format"
+                f"{folder}: hard cases have a page, and no Markdown; leave out --format"
             )
         from reports.page.build import stability_page
 

@@ -91,7 +91,7 @@ class RunRequest:
     """Arguments of `run`, as given; ``settings`` in Python alone."""
 
     scene: options.SceneName
-    engine: Annotated[str | None, "Engine; the first of `crankcheck engines` if none."] = None
+    engine: Annotated[str | None, "Engine; default: the first of `crankcheck engines`."] = None
     profile: Annotated[str, "Profile of the engine."] = "tuned"
     dt_s: options.StepS = None
     steps_per_turn: options.StepsPerTurn = None
@@ -258,7 +258,7 @@ def _refuse_other_length(scene: Scene, drive: Drive, request: RunRequest) -> Non
     for name in options.given(request, "turns", "steps_per_turn"):
         if name not in way_of(scene).lengths_by:
             raise CrankcheckError(
-                f"{name}: {scene.name} is in free motion, and has no turns; give --dt and "
+                f"{name}: {scene.name} is in free motion, without turns; give --dt and "
                 "--duration, in seconds"
             )
         if request.duration_s is not None:

@@ -186,7 +186,7 @@ class DrivenSolving(solving.Solving):
         if request.clockwise and not place:
             raise CrankcheckError("--clockwise: for one position; give --at-deg, such as 90")
         if is_drawn and not request.forces:
-            raise CrankcheckError("--figures: draws forces; give --forces as well")
+            raise CrankcheckError("--figures: draws forces over a turn; give --forces as well")
         if is_drawn and place:
             why = "they belong to a turn; leave one of them out"
             raise CrankcheckError(f"--figures with {place}: {why}")

@@ -70,8 +70,7 @@ class ElasticChoice:
             for option, value in (("--modes", self.modes), ("--axial-modes", self.axial_modes)):
                 if value is not None:
                     raise CrankcheckError(
-                        f"--elements with {option}: a link is described by elements or by modes; "
-                        "give one of them"
+                        f"--elements with {option}: a link has elements or modes; give one of them"
                     )
             return Elements(_number(self.elements, "--elements", MOST_ELEMENTS))
         links = scene.elastic.values()

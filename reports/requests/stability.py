@@ -49,10 +49,10 @@ from sim.registry import engine, offering
 class StabilityRequest:
     """Arguments of `stability`, as given; ``at`` is one value of one case."""
 
-    cases: Annotated[Sequence[str], argument("CASE", "Hard cases; all if none.")] = ()
+    cases: Annotated[Sequence[str], argument("CASE", "Hard cases; default: all driven ones.")] = ()
     engines: Engines = ()
     profiles: Annotated[Sequence[str], option("Profile; may be repeated.", "--profile")] = ()
-    at: Annotated[float | None, "Only this value of the one named case."] = None
+    at: Annotated[float | None, "Run only this value of the one named case."] = None
     folder: Annotated[Path | None, output_option("Folder for matrix, table and page.")] = None
     baseline: Annotated[
         Path | None, option("Folder, or JSON, of an earlier run; exit 1 when worse than it.", "DIR")
@@ -62,8 +62,8 @@ class StabilityRequest:
     memory_gb: Annotated[float, "Most memory for a run, in GB."] = 4.0
     jobs: Jobs = 0
     forces: Forces = False
-    free: Annotated[bool, "The cases of free motion, which are not among all."] = False
-    elastic: Annotated[bool, "Those of elastic links, which are not among all."] = False
+    free: Annotated[bool, "Run the cases of free motion."] = False
+    elastic: Annotated[bool, "Run the cases of elastic links."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Answer, and return the exit code: 0, or 1 where one value is not held, or anything is
@@ -110,7 +110,7 @@ def _cases(names: Sequence[str], asked: Mapping[str, bool]) -> list[Case]:
     kinds = [kind for kind, given in asked.items() if given]
     if len(kinds) > 1:
         both = " with ".join(f"--{kind}" for kind in kinds)
-        raise CrankcheckError(f"{both}: no case is of both; give one of them")
+        raise CrankcheckError(f"{both}: no case belongs to both; give one of them")
     for name in names:
         if name not in CATALOGUE:
             raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
@@ -150,7 +150,7 @@ def _single(
     value = request.at
     assert value is not None
     if len(cases) != 1:
-        raise CrankcheckError(f"--at {value:g}: a value of one case; found {len(cases)}, name one")
+        raise CrankcheckError(f"--at {value:g}: needs one case, found {len(cases)}; name one")
     for option_ in given(request, "folder", "baseline"):
         raise CrankcheckError(
             f"--at and {option_}: one value is shown, and neither stored nor compared; leave one "
@@ -188,14 +188,14 @@ IN_FOLDER = {"selftest.csv": "--csv", "selftest.json": "--json"}
 class SelftestRequest:
     engines: Annotated[
         Sequence[str],
-        option("Engine; may be repeated; all if none.", "--engine"),
+        option("Engine; may be repeated; default: all.", "--engine"),
     ] = ()
     faults: Annotated[
-        Sequence[str], option("Fault of the table; may be repeated; all if none.", "--fault NAME")
+        Sequence[str], option("Fault of the table; may be repeated; default: all.", "--fault NAME")
     ] = ()
     jobs: Jobs = 0
-    csv: Annotated[Path | None, "Write a row per fault and place."] = None
-    json: Annotated[Path | None, "Write the same and more as JSON."] = None
+    csv: Annotated[Path | None, "Write a row per fault and place as CSV."] = None
+    json: Annotated[Path | None, "Write the same, and more, as JSON."] = None
     folder: Annotated[Path | None, output_option("Write both into a folder.")] = None
     forces: Annotated[bool, "Plant faults of reactions and torques instead."] = False
     free: Annotated[bool, "Plant faults of dynamics in free motion instead."] = False
@@ -238,8 +238,7 @@ def _kind(request: SelftestRequest) -> RunKind:
     asked = [kind for kind in KINDS_ASKED if getattr(request, kind)]
     if len(asked) > 1:
         raise CrankcheckError(
-            f"--{asked[0]} with --{asked[1]}: the faults of either have runs of their own; give "
-            "one of them"
+            f"--{asked[0]} with --{asked[1]}: each has its own runs; give one of them"
         )
     return asked[0] if asked else "motion"
 

@@ -178,9 +178,10 @@ def sweep(
 
 @dataclass(frozen=True)
 class SweepRequest:
-    folder: Annotated[Path, output_option("Folder of the results.")]
+    folder: Annotated[Path, output_option("Folder for the results.")]
     scenes: Annotated[
-        Sequence[str], argument("SCENE", "Shipped names or scene files; those of the study.")
+        Sequence[str],
+        argument("SCENE", "Shipped names or scene files; default: the study's."),
     ] = ()
     study: Annotated[Path | None, "Study file (.toml, .yaml); the shipped one if none."] = None
     engines: options.Engines = ()
@@ -200,15 +201,15 @@ class SweepRequest:
     keep_trajectories: Annotated[bool, "Keep the whole motion of every cell."] = False
     again: Annotated[bool, "Run cells again that timed out or crashed."] = False
     forces: options.Forces = False
-    free: Annotated[bool, "Free motion; all free scenes if none is named."] = False
+    free: Annotated[bool, "Free motion; default: all free scenes."] = False
     dt_s: Annotated[str | None, option("Steps of free motion, seconds.", "--dt S,S,...")] = None
     duration_s: options.Duration = None
     segments: Annotated[
-        str | None, option("Of each elastic link, with commas (default 16).", "N,N,...")
+        str | None, option("Segments of each elastic link, with commas (default 16).", "N,N,...")
     ] = None
     springs: options.SpringKind = None
     facets: Annotated[
-        str | None, option("Cams by contact, of so many facets, with commas.", "N,N,...")
+        str | None, option("Cams by contact, with so many facets, with commas.", "N,N,...")
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:

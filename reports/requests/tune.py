@@ -39,10 +39,12 @@ class TuneRequest:
     scenes: Annotated[Sequence[str], argument("SCENE", "Shipped names or scene files.")]
     engine: Annotated[str, "Engine whose settings are searched."]
     target: Annotated[float, "Error to reach, as a pure number: rad, lengths over L."]
-    budget: Annotated[int, "Trials in all, also of a resumed search."] = 60
-    seed: Annotated[int, "The same seed finds the same settings."] = 0
+    budget: Annotated[int, "Trials in all, those of a resumed search included."] = 60
+    seed: Annotated[int, "Seed; the same seed finds the same settings."] = 0
     turns: Annotated[float, "Turns of the driver in a run."] = 2.0
-    output: Annotated[Path | None, output_option("Keep the search (.db), to go on later.")] = None
+    output: Annotated[Path | None, output_option("Keep the search (.db), to continue later.")] = (
+        None
+    )
     limit_s: Annotated[float, "Longest time for a run, in seconds."] = 20.0
     timing: Annotated[bool, "Time the found settings beside the profile."] = True
 

@@ -75,4 +75,4 @@ def _quantity(argument: str) -> str:
     if argument in BY_ARGUMENT:
         return BY_ARGUMENT[argument]
     hint = suggestion(argument, BY_ARGUMENT, "use one of", 2, 0.6)
-    raise CrankcheckError(f"{argument}: it is no quantity; {hint}")
+    raise CrankcheckError(f"{argument}: not a quantity; {hint}")

@@ -97,8 +97,9 @@ def _cost(line: Line, dt_s: float) -> float:
 
 
 MEANS = (
-    "Geometric means over the scenes, interpolated along the fits; m/n: so on m of n scenes only. "
-    "If the coarsest step reaches an error already, its time stands: nothing is extrapolated."
+    "Geometric means over the scenes, interpolated along the fits; m/n: reached on m of n "
+    "scenes only. If the coarsest step already reaches an error, its time is shown: nothing is "
+    "extrapolated."
 )
 
 

@@ -237,11 +237,12 @@ def refuse_gone(old: StoredRun, new: StoredRun) -> None:
         if missing:
             which = f"{count(len(missing), 'cell')} of {other.label}, such as {missing[0].label},"
         elif run.lost and other.lost:
-            which = f"cells that {other.label} has lost too"
+            which = f"cells that {other.label} lost too"
         else:
             continue
         busy = any(BUSY in each for each in run.gone)
         raise CrankcheckError(
-            f"{run.label}: {which} may be among the missing cells there ({'; '.join(run.gone)}); "
-            f"{'let its sweep end' if busy else 'mend it'} first, or compare with a whole run"
+            f"{run.label}: {which} may be among the missing cells there "
+            f"({'; '.join(run.gone)}); {'let its sweep end' if busy else 'repair it'} first, or "
+            "compare with a whole run"
         )

@@ -162,7 +162,7 @@ def nothing(best: Candidate, good: Sequence[Candidate], target: float) -> str:
     if good:
         names = ", ".join(dict.fromkeys(called(one.variant, one.drive) for one in good))
         return (
-            f"{names} would do, but no cost is known of every scene: sweep again without "
+            f"{names} would do, but costs of some scenes are unknown: sweep again without "
             "--no-timing"
         )
     return f"nearest is {best.name}: {_shortfall(best, target)}"
@@ -301,7 +301,7 @@ def noise_line(stored: Stored) -> str:
     """Return the noise of costs in a line; and whose times are left out."""
     apart = pairs(stored)
     if apart.empty:
-        return "No cell was timed: no costs, and no recommendation rests on one."
+        return "No cell was timed: costs are unknown, and no recommendation uses them."
     text = (
         f"Noise of costs on {machine(stored.cells)}: {SHARE:.0%} of {len(apart)} A/A pairs differ "
         f"by less than {noise(stored):.1%}, half of them by less than {apart.median():.1%}; "

@@ -90,7 +90,7 @@ def _not_a_run(folder: Path, there: list[str]) -> str:
         path.parent.name for name in (MANIFEST, CELLS) for path in folder.glob(f"*/{name}")
     )
     if inside:
-        return f"no stored run there, but in folders of it: name one of {', '.join(inside[:8])}"
+        return f"no stored run there, but in its folders: name one of {', '.join(inside[:8])}"
     return f"no stored run there (no {MANIFEST}, no {CELLS}); {WRITERS} makes one"
 
 
@@ -175,7 +175,7 @@ def _chosen(
         versions = {e: {version: None} if version in v else v for e, v in versions.items()}
     choice = f"; {option} chooses" if option else ""
     notes = tuple(
-        f"{folder} holds {engine} {', '.join(each)}: of each cell the last written counts{choice}"
+        f"{folder} holds {engine} {', '.join(each)}: the last written of each cell counts{choice}"
         for engine, each in versions.items()
         if len(each) > 1
     )

@@ -256,7 +256,7 @@ def _fault(
 
 FAULTS = (
     _fault("force-sign", "all forces have the other sign", "CC120", each_force(lambda x, _: -x)),
-    _fault("force-giver", "a pin's force said of the other body", "CC120", of_the_giver),
+    _fault("force-giver", "a pin's force given for the other body", "CC120", of_the_giver),
     _fault("force-body-frame", "vectors in the bodies' frames", "CC120", in_body_frame),
     _fault("force-turned", "x for y: a quarter of a turn", "CC120", turned_aside),
     _fault("force-half-step", "stamped too late", "CC120", stamped, 0.5, "steps"),

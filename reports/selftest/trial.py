@@ -49,7 +49,7 @@ def chosen_faults(
     for name in names:
         if name not in FAULTS:
             hint = suggestion(name, FAULTS, "use")
-            raise CrankcheckError(f"--fault {name!r}: there is none of that name; {hint}")
+            raise CrankcheckError(f"--fault {name!r}: unknown; {hint}")
         if not any(map(FAULTS[name].possible, chosen)):
             able = " and ".join(FAULTS[name].engines) or "engines that are not installed"
             raise CrankcheckError(

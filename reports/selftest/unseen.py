@@ -86,8 +86,8 @@ def _half_a_step(energy: Energy) -> Energy:
 
 
 _NO_FORCES = (
-    "Under a prescribed crank the lengths alone say how a mechanism moves; masses and loads decide "
-    "the forces, which no rule compares."
+    "Under a prescribed crank the lengths alone determine the motion; masses and loads "
+    "determine the forces, which no rule compares."
 )
 UNSEEN = (
     Unseen("mass-other", "the scene that is run has a heavier link",
@@ -98,8 +98,7 @@ UNSEEN = (
            engines.after_a_third(lambda tools: lambda session, n: tools.pull(session, 9.81 * n)),
            needs=lambda name: name in offering("spoiler")),
     Unseen("error-tenth", "places with a tenth of their error",
-           "An engine that errs less is a better engine; errors below its order are seen "
-           "(too-good).",
+           "An engine with smaller errors is better; errors below its order are seen (too-good).",
            in_log(_tenth)),
     Unseen("even-taken", "the crank's pin, from the reference",
            "A body that moves evenly with the crank is right to rounding in an engine as well.",
@@ -119,14 +118,13 @@ UNSEEN = (
            in_log(of_output("theta", lambda theta, size: theta + 2.0 * np.pi * round(size))),
            shows=False),
     Unseen("cost-halved", "half the time that the run took",
-           "Times are advice, measured apart, and judged by nothing.",
+           "Times are advice, measured separately, and no rule judges them.",
            in_log(_cheaper), shows=False),
 )  # fmt: skip
 UNSEEN_FREE = (
     Unseen("matter-scaled", "every mass and inertia twice",
-           "Under weight alone a mechanism moves as it does, whatever the factor of all its "
-           "masses; its reactions differ, which --forces plants. One mass of several is seen "
-           "(mass-wrong).",
+           "Under weight alone a common factor of all masses leaves the motion unchanged; the "
+           "reactions differ, which --forces plants. One mass of several is seen (mass-wrong).",
            free_changes.in_free_scene(free_changes.of_all_matter),
            shows=False),  # of a factor of two not one bit changes in some engines
     Unseen("energy-even", "the energy of the start at every instant",
@@ -134,8 +132,8 @@ UNSEEN_FREE = (
            "damping or driving of that motion is seen in it (damping-left-on, energy-fed).",
            _of_energy(_even)),
     Unseen("energy-half-step", "potential energy of half a step before",
-           "The total comes and goes with the motion by as much as a step makes of it, as that of "
-           "an engine does; its drift is judged, and the motion itself.",
+           "The total varies with the motion by the error of a step, as that of an engine does; "
+           "its drift and the motion itself are judged.",
            _of_energy(_half_a_step)),
     Unseen("energy-parts", "kinetic energy reported as potential",
            "The total is judged: both parts are computed from the logged motion here.",
@@ -144,16 +142,17 @@ UNSEEN_FREE = (
 )  # fmt: skip
 UNSEEN_ELASTIC = (
     Unseen("node-elsewhere", "a node away from the middle, 1 % too far out",
-           "The distance of the middle from the line between the pins is compared; a chain bent "
-           "otherwise elsewhere also moves otherwise in its middle, unless only its log is off.",
+           "The distance of the middle from the line between the pins is compared; a chain that "
+           "bends differently elsewhere also moves differently in its middle, unless only its "
+           "log is wrong.",
            in_chain_log(lambda truth, motion, size: at_quarter(truth, motion, 1e-2 * size)),
            shows=False),  # nothing of it is among the errors
     Unseen("modulus-hardly", "the modulus, by 0.01 %",
            "Within the limit of this step; 1 % is seen (modulus-off).",
            in_given(springs(lambda one, n, size: stiffer(one, n, 1e-4 * size)))),
     Unseen("turning-inertia", "segments with 1 % less inertia about their centre",
-           "Most of the inertia of a chain is that of its masses across; what rods have about "
-           "their own centre falls as 1/n^2, and three times as much of it is seen "
+           "Most of the inertia of a chain comes from its moving masses; the share of the rods "
+           "about their own centres falls as 1/n^2, and three times that share is seen "
            "(inertia-at-ends).",
            in_given(segments(lambda link, size: free_changes.turning_light(link, 1e-2 * size)))),
 )  # fmt: skip

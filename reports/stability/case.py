@@ -25,7 +25,7 @@ WITHIN = 1e-2
 STEPS_PER_TURN = 360.0
 TURNS = 2.0
 BEYOND = 10.0
-"""Factor beyond its values up to which a case may be looked at."""
+"""Factor beyond its values up to which a case may be run."""
 Scale = Literal["log", "linear", "whole"]
 Judge = str
 """Name of the reference of runs, see `reports.stability.case`."""
@@ -106,7 +106,7 @@ class Case(CaseFacts):
         easy, hard = self.labels[0], self.labels[-1]
         means = f"{self.parameter}, in the catalogue {easy} to {hard} {self.unit}".rstrip()
         if len(self.values) == 1:
-            raise CrankcheckError(f"--at {value:g}: {self.name} has the one value {easy}")
+            raise CrankcheckError(f"--at {value:g}: {self.name} has only the value {easy}")
         if not math.isfinite(value):
             raise CrankcheckError(f"--at {value:g}: not a finite number; it is the {means}")
         if self.scale != "linear" and value <= 0.0:

@@ -111,7 +111,7 @@ def _branch_changed(errors: ErrorSeries, _: float) -> Reason | None:
     if errors.departure is None or errors.worst(errors.gap)[0] > CLOSED:
         return None
     at = int(np.searchsorted(errors.time_s, errors.departure.time_s))
-    reason = f"{errors.departure.link} went over to the other assembly"
+    reason = f"{errors.departure.link} moved to the other assembly"
     return reason, min(at, len(errors.time_s) - 1)
 
 
@@ -176,7 +176,7 @@ RULES: tuple[GradeRule, ...] = (
     ),
     GradeRule("branch-changed", "the loops are closed, in the other assembly", _branch_changed),
     GradeRule("locked", "the loops are closed, and the crank stands short of its command", _locked),
-    GradeRule("silently-open", "a joint has come apart; a driven one looks fine", _silently_open),
+    GradeRule("silently-open", "a joint has come apart; driven links look fine", _silently_open),
     GradeRule("drifts", "the error is over the class and grows with the turns", _drifts),
     GradeRule("degraded", "the error is over the class, and does not blow up", _degraded),
     GradeRule("ok", "within the class throughout", lambda *_: ("", None)),
@@ -184,4 +184,4 @@ RULES: tuple[GradeRule, ...] = (
 MEANINGS: dict[Outcome, str] = {rule.outcome: rule.meaning for rule in RULES} | {
     "unsupported": "the engine cannot hold the scene"
 }
-"""Meaning of each outcome, for people."""
+"""Meaning of each outcome."""

@@ -26,7 +26,7 @@ LETTERS: Mapping[Outcome, str] = {
 NARROW = 80
 """Columns of a terminal below which a case is shown in words alone."""
 BARE = ("X", "!", "-")
-"""Letters without an error: it says nothing."""
+"""Letters of outcomes whose error means nothing."""
 STYLES: Mapping[Outcome, str] = {
     "degraded": "yellow",
     "drifts": "yellow",
@@ -136,4 +136,6 @@ def show_run(console: Console, case: CaseFacts, run: Graded) -> None:
         if not math.isnan(number):
             console.print(f"  {name}: {number:.3g}", highlight=False)
     console.print(f"  {run.steps} steps of {run.dt_s:.4g} s", highlight=False)
-    console.print(f"  truth: {case.truth}", f"  expected: {case.expected}", sep="\n", style="dim")
+    console.print(
+        f"  reference: {case.truth}", f"  expected: {case.expected}", sep="\n", style="dim"
+    )

@@ -143,8 +143,8 @@ def _refuse_other(folder: Path) -> None:
     others = sorted(path.name for path in folder.iterdir() if not _begun(path))
     if others:
         raise CrankcheckError(
-            f"-o {folder}: holds {others[0]} and {why}, so it is no store of a sweep; "
-            "name a new or an empty folder"
+            f"-o {folder}: holds {others[0]} and {why}, so it is not the store of a sweep; name "
+            "a new or an empty folder"
         )
 
 
@@ -183,7 +183,7 @@ def mend(folder: Path, store: ExaminedStore) -> list[str]:
     if moved:
         lines.append(f"moved to {folder / manifests.DAMAGED}: {', '.join(moved)}")
     if any(each.path == MANIFEST for each in bad):
-        lines.append(f"{MANIFEST} is made again, and knows of this sweep alone")
+        lines.append(f"{MANIFEST} is made again, and knows only this sweep")
     return [f"{folder}: damaged", *manifests.indented(lines)] if lines else []
 
 

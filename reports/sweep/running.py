@@ -212,7 +212,7 @@ def swept(
             if manner.timing:
                 done = running.timings(done)
         except Stopped:
-            progress.print("what is done is kept; the same command continues from there")
+            progress.print("finished cells are kept; the same command continues from there")
             raise
     return laid, done
 
@@ -247,6 +247,6 @@ def show_sweep(console: Console, folder: Path, number: int, done: Done) -> None:
     console.print()
     older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
     if older:
-        console.print(f"left out: {older} cells of earlier runs, whose names stand for others now")
+        console.print(f"left out: {older} cells of earlier runs, whose names mean others now")
     console.print(recommendation_table(recommendations(stored), console.width))
     console.print(noise_line(stored), highlight=False)

@@ -173,7 +173,7 @@ def check_storage(path: Path) -> None:
     if not path.exists():
         return
     if not path.is_file():  # a pipe would be waited for
-        raise CrankcheckError(f"-o {path}: no plain file; name a new file")
+        raise CrankcheckError(f"-o {path}: not a plain file; name a new file")
     if path.stat().st_size == 0:
         return
     names = _names(path)

@@ -77,7 +77,7 @@ def _ratio(sides: Sequence[Side]) -> str:
     if first is last or not (first.attempt.reached and last.attempt.reached):
         return ""
     what = f"cost of a turn, {last.title} over {first.title}"
-    model = f"{last.attempt.cost_us / first.attempt.cost_us:.2f} by the model that was searched on"
+    model = f"{last.attempt.cost_us / first.attempt.cost_us:.2f} by the model of the search"
     if first.taken is None or last.taken is None:
         return f"{what}: {model}"
     ratio = last.taken.s_per_turn / first.taken.s_per_turn

@@ -15,7 +15,7 @@ from sim.registry.offers import remedies
 HELPS = 3.0
 """Factor by which a remedy reduces the error; less may be chance."""
 ENDS = ("ok", "diverged", "locked", "branch-changed")
-"""Status of runs that other settings may mend."""
+"""Status of runs that other settings may repair."""
 
 
 def advised(cell: Cell) -> Checked:

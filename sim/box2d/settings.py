@@ -7,10 +7,10 @@ SHIPPED = {
     "substeps": Setting(4, "default of its examples: in each, joints are solved twice"),
     "joint_swings": Setting(
         0.0,
-        "default: none in a step, but 60 Hz of the springs that are its joints; more come by "
-        "another unit of time, and at most an eighth in a sub-step",
+        "default: 0 leaves the springs that are its joints at 60 Hz; other numbers set another "
+        "unit of time, with at most an eighth in a sub-step",
     ),
-    "motor_n_m": Setting(1e6, "most torque [N m] or force [N] of a motor: as good as any"),
+    "motor_n_m": Setting(1e6, "largest torque [N m] or force [N] of a motor: as good as any other"),
 }
 AS_SHIPPED = Profile("as-shipped", "box2d", "Box2D's own defaults", SHIPPED)
 TUNED = Profile(
@@ -26,9 +26,9 @@ TUNED = Profile(
         ),
         "substeps": Setting(
             25,
-            "errors fall as their square, of rates as their number, until numbers are rounded; "
-            "about 20 by a four-bar whose rocker is 1000 times as heavy, and one at 100 rad/s; 25 "
-            "by the shipped free scenes; presses ask for 50, which round more",
+            "errors shrink with their square (of rates with their number), down to rounding; "
+            "best are about 20 for four-bars with a rocker 1000 times as heavy, or at 100 "
+            "rad/s, 25 for the shipped free scenes, and 50 for presses, but with more rounding",
         ),
     },
 )

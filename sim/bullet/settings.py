@@ -12,7 +12,9 @@ AS_SHIPPED = Profile(
         "iterations": Setting(50, "default: most passes over the constraints in a step"),
         "residual": Setting(1e-7, "default: they end at this square of a change of speed"),
         "flywheel_ratio": Setting(100.0, "the drive, not an engine default: see tuned"),
-        "servo_gain": Setting(1.0, "default: share of its fault of speed a motor takes in a step"),
+        "servo_gain": Setting(
+            1.0, "default: share of its error of speed that a motor corrects in a step"
+        ),
     },
 )
 TUNED = Profile(
@@ -22,18 +24,20 @@ TUNED = Profile(
     dict(AS_SHIPPED.settings)
     | {
         "erp": Setting(
-            1.0, "a gap stays at the fault of one step over this; above 1 steps overshoot"
+            1.0, "a gap stays at the error of one step over this; above 1 steps overshoot"
         ),
         "iterations": Setting(
-            10_000, "most scenes need 50; a shaper under a servo thousands, or is off by 50 times"
+            10_000,
+            "most scenes need 50; a shaper under a servo thousands, or its error is 50 "
+            "times larger",
         ),
         "residual": Setting(
-            1e-24, "0 gives the same errors at 50 times the cost, 1e-7 a drive off by 2e-6 rad"
+            1e-24, "0 gives the same errors at 50 times the cost, 1e-7 a drive error of 2e-6 rad"
         ),
         "flywheel_ratio": Setting(
             100.0,
-            "inertia of the led link over that of the mechanism: the passes need not fight for "
-            "it, 20 times fewer of them; above 1e6 they end early",
+            "inertia of the led link over that of the mechanism: with it 20 times fewer passes "
+            "suffice; above 1e6 they end early",
         ),
     },
 )

@@ -7,9 +7,9 @@ SHIPPED = {
     "error_reduction": Setting(0.01, "default: share of a loop's error that a step removes"),
     "force_mixing": Setting(1e-9, "default, and the least: softness of loops"),
     "coriolis": Setting(
-        "before", "as it steps: joint rates of half a step before in the forces that go with them"
+        "before", "as it steps: forces of rates use the joint rates of half a step before"
     ),
-    "motor_n_m": Setting(1e6, "most torque [N m] or force [N] of a servo: as good as any"),
+    "motor_n_m": Setting(1e6, "largest torque [N m] or force [N] of a servo: as good as any other"),
 }
 AS_SHIPPED = Profile("as-shipped", "dart", "DART's own defaults", SHIPPED)
 TUNED = Profile(
@@ -20,14 +20,14 @@ TUNED = Profile(
     | {
         "error_reduction": Setting(
             1.0,
-            "the whole error in one step: the rocker of the lecture's four-bar is off by 4.5e-5 "
-            "rad at 1 ms, with 0.5 by 8.9e-5, with the default by 2.0e-3",
+            "the whole error in one step: the error of the lecture's rocker at 1 ms is 4.5e-5 "
+            "rad, 8.9e-5 with 0.5, 2.0e-3 with the default",
         ),
         "coriolis": Setting(
             "middle",
-            "rates at the positions: the difference of its own Coriolis forces is given as joint "
-            "forces; in free motion, errors fall as dt^2 in place of dt (double pendulum, 2 s: "
-            "2.3e-6 in place of 5.8e-4 of the sensitivity)",
+            "rates at the positions: the difference of its own Coriolis forces is given as "
+            "joint forces; in free motion, errors shrink as dt^2 instead of dt (double "
+            "pendulum, 2 s: 2.3e-6 instead of 5.8e-4 of the sensitivity)",
         ),
     },
 )

@@ -22,7 +22,7 @@ AS_SHIPPED = Profile("as-shipped", "drake", "Drake's own solver and rates", SHIP
 TUNED = Profile(
     "tuned",
     "drake",
-    "A rotor that no mechanism holds up; products of rates at the instant of other forces",
+    "A rotor that no mechanism slows down; products of rates at the instant of other forces",
     SHIPPED
     | {
         "rotor_inertia": Setting(
@@ -32,9 +32,9 @@ TUNED = Profile(
         ),
         "bias_rates": Setting(
             "middle",
-            "but with a prescribed driver, forces given to Drake make up for the half step: free "
-            "motion is of second order, not first, and 2 s of double-pendulum in steps of 1 ms off "
-            "by 2e-6 rad over its sensitivity, not 6e-4",
+            "unless the driver is prescribed, forces given to Drake correct the half step: free "
+            "motion is of second order, not first; after 2 s of double-pendulum in steps of 1 "
+            "ms its error is 2e-6 rad over its sensitivity, not 6e-4",
         ),
     },
 )

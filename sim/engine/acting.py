@@ -387,7 +387,7 @@ def slider_friction(scene: Scene, drive: Drive, engine: str) -> dict[str, float]
         names = ", ".join(f"friction.{name}" for name in rubbing)
         raise EngineError(
             f"{scene.name}: {names}: {engine} has no friction that holds a slider at rest, and "
-            "free motion may bring it there; drive the mechanism, or take the friction out"
+            "free motion may bring it to rest; drive the mechanism, or remove the friction"
         )
     return rubbing
 

@@ -25,7 +25,7 @@ from sim.engine.ties import RubbingJoint, rubbing_joints, slide_of
 HEAVY = 1e9
 """Inertia of a led driver over the mechanism's: nothing that is read has as many digits."""
 TURN_BETWEEN = 0.25
-"""Turn between two looks at an angle, by the rates at the first [rad]: bodies may be faster."""
+"""Turn between two readings of an angle, by the rates at the first [rad]: bodies may be faster."""
 SHARE = 0.5
 """Share of its error of place that a motor corrects in a step."""
 

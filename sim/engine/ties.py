@@ -104,8 +104,8 @@ def refuse_driver_angle(scene: Scene, engine: str) -> None:
     driver = scene.driver
     if not driver.is_crank and any(load.over == "angle" for load in scene.loads.values()):
         raise EngineError(
-            f"{scene.name}: a load goes with the driver's angle, and {engine} is given that of a "
-            f"crank alone; this driver is {driver.joint}"
+            f"{scene.name}: a load follows the driver's angle, which {engine} gets only of a "
+            f"crank; this driver is {driver.joint}"
         )
 
 
@@ -114,7 +114,7 @@ def refuse_pin_friction(scene: Scene, engine: str) -> None:
     if names := ", ".join(f"friction.{n}" for n in scene.friction if n not in scene.sliders):
         raise EngineError(
             f"{scene.name}: {names}: friction in pins of {engine} is not offered by crankcheck; "
-            "take it out"
+            "remove it"
         )
 
 

@@ -216,13 +216,13 @@ def apply_friction(applied: Applied, drive: Drive) -> None:
     scene = applied.scene
     if scene.friction and drive == "free":
         raise EngineError(
-            f"friction ({', '.join(scene.friction)}): exudyn is given it as forces against the "
-            "motion, and joints that nothing drives come to rest and stick; take it out, or use "
+            f"friction ({', '.join(scene.friction)}): exudyn gets it as forces against the "
+            "motion, and joints without a drive come to rest and stick; remove it, or use "
             "drive prescribed"
         )
     for name, friction in scene.friction.items():
         if not isinstance(friction, ConstantFriction):
-            raise EngineError(f"friction.{name}: exudyn is given none that follows the reactions")
+            raise EngineError(f"friction.{name}: exudyn gets none that follows the reactions")
         rub = _rub_line if friction.joint in scene.sliders else _rub_pin
         rub(applied, friction, still_rad_s(scene))
 

@@ -78,7 +78,7 @@ def driven_coordinate(scene: Scene, drive: Drive) -> tuple[int, float]:
     refuse_driver_angle(scene, "exudyn")
     if drive == "servo":
         raise EngineError(
-            f"{scene.name}: exudyn is given a servo for a crank alone, and this driver is "
+            f"{scene.name}: exudyn gets a servo only for a crank, and this driver is "
             f"{driver.joint}; use --drive prescribed"
         )
     if driver.slider is None:
@@ -95,8 +95,8 @@ def driven_coordinate(scene: Scene, drive: Drive) -> tuple[int, float]:
         fault = f"the line of {driver.slider} goes along neither x nor y; turn the scene, or"
     if fault:
         raise EngineError(
-            f"{scene.name}: exudyn is given a driven slider as a coordinate of its body, and "
-            f"{fault} take another engine"
+            f"{scene.name}: exudyn gets a driven slider as a coordinate of its body, and "
+            f"{fault} use another engine"
         )
     return along, math.copysign(1.0, u[along])
 

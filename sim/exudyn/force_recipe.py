@@ -129,8 +129,8 @@ def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
     words = [what for what, there in lacking.items() if there]
     if words or not isinstance(law, laws.ConstantSpeed):
         raise EngineError(
-            f"{scene.name}: the recipe of exudyn does not cover {' and '.join(words)}; take that "
-            "out, or use another scene"
+            f"{scene.name}: the recipe of exudyn does not cover {' and '.join(words)}; remove "
+            "that, or use another scene"
         )
     placed = EngineBodies(scene, state, centre=centres(scene))
     pins = ((h.point, *a, *b) for h in hinges(scene, GROUND) for a, b in [placed.hinge_ends(h)])

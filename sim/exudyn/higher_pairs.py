@@ -67,7 +67,7 @@ def add_cam(made: PlaneSystem, pair: CamPair) -> None:
     if pair.carrier != GROUND:
         raise EngineError(
             f"cams.{pair.name}: a cam on a moving carrier, {pair.carrier}, is not offered by "
-            "crankcheck in exudyn; take another engine"
+            "crankcheck in exudyn; use another engine"
         )
     (way, ahead), none = _follower(made, pair), np.zeros((1, NODE))
 

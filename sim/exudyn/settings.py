@@ -46,9 +46,11 @@ AS_SHIPPED = Profile(
         "integrator": Setting(
             "GeneralizedAlpha", "default: joints closed in their places (index 3)"
         ),
-        "spectral_radius": Setting(0.9, "default: damps motion faster than the step by 10 % in it"),
+        "spectral_radius": Setting(
+            0.9, "default: damps motion faster than the step by 10 % a step"
+        ),
         "free_spectral_radius": Setting(
-            0.9, "of the drive `free`, in place of the other: default, as of the other"
+            0.9, "replaces the other with the drive `free`: default, the same"
         ),
         "residual": Setting("forces", "default: residualMode 0, forces and gaps alike"),
         "relative_tolerance": Setting(1e-8, "default: of Newton's method, over the first residual"),
@@ -62,12 +64,12 @@ AS_SHIPPED = Profile(
         "jacobian": Setting("as-needed", "default: useModifiedNewton, updated where it is slow"),
         "adaptive_step": Setting(
             "enable",
-            "default: a step that fails is cut; to end at each sample all the same exudyn is "
-            "called step by step, and computes Newton's matrix anew in each, which takes a third "
-            "less time than a simulation in one go",
+            "default: a failed step is cut; to end at each sample exudyn is called step by "
+            "step, and computes Newton's matrix again in each, which takes a third less time "
+            "than a simulation in one go",
         ),
         "linear_solver": Setting("EXUdense", "default"),
-        "ignore_singular": Setting("disable", "default: joints that are redundant end the run"),
+        "ignore_singular": Setting("disable", "default: redundant joints end the run"),
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
     },
 )
@@ -79,44 +81,44 @@ TUNED = Profile(
     | {
         "spectral_radius": Setting(
             0.4,
-            "at the start accelerations are off by a part of their change in a step, which rings "
+            "accelerations start with an error, a part of their change in a step, which rings "
             "for 60 steps with 0.9 and for 5 with 0.4; 0.4 rings least over all shipped scenes, "
             "and 0 has 2.6 times the error of velocities",
         ),
         "free_spectral_radius": Setting(
             0.9,
-            "with the drive `free`: the start has the right accelerations, so nothing rings, and "
-            "damping would take from the motion itself: in 10 s of fourbar-swing, steps of 1 ms, "
+            "with the drive `free`: the start has the correct accelerations, so nothing rings, "
+            "and damping would slow the motion itself: in 10 s of fourbar-swing, steps of 1 ms, "
             "0.4 loses 20 times the energy that 0.9 loses, and has 1.8 times the error over its "
             "sensitivity; 1 diverges",
         ),
         "residual": Setting(
             BY_NEED,
-            "increments of the coordinates where joints and drive determine them all: they mean "
+            "increments of the coordinates, if joints and drive determine them all: they mean "
             "the same for all masses, speeds and loads. Forces and gaps end the iterations too "
-            "soon in light and slow mechanisms, whose forces are below the tolerance, or beside a "
-            "heavy load, and never in heavy and fast ones, whose forces are rounded by more than "
-            "it. Where inertia determines some coordinates increments would leave their "
-            "accelerations open: forces, with a tolerance above the rounding of inertia",
+            "soon in light and slow mechanisms, whose forces are below the tolerance, or beside "
+            "a heavy load, and never in heavy and fast ones, whose forces are rounded by more. "
+            "If inertia determines some coordinates, increments would leave their accelerations "
+            "open: forces, with a tolerance above the rounding of inertia",
         ),
         "beam_rounding": Setting(
             16.0,
-            "for beams: no residual falls below the rounding of their axial force; with a lower "
-            "tolerance steps fail and are cut, which excites vibration: of fourbar-elastic with 8 "
-            "elements the deflection is 0.08 % off at 720 steps a turn, and 0.02 % with this; "
-            "finer runs and those of 16 elements break down",
+            "for beams: no residual is below the rounding of their axial force; with a lower "
+            "tolerance steps fail and are cut, which excites vibration: the deflection of "
+            "fourbar-elastic with 8 elements has an error of 0.08 % at 720 steps a turn, and "
+            "0.02 % with this; finer runs and those of 16 elements break down",
             of_beams=True,
         ),
         "jacobian": Setting(
             "each-step",
-            "as with single steps anyway; in one go a step takes 3 iterations instead of 8, for a "
+            "as with single steps; in one go a step takes 3 iterations instead of 8, for a "
             "matrix, and two thirds of the time",
         ),
         "linear_solver": Setting(
             BY_NEED,
-            "EXUdense; where joints are redundant at the start EigenDense, which takes as many of "
-            f"them as there have to be; of more than {MOST_DENSE} coordinates and constraints "
-            "EigenSparse, 1.5 to 14 times faster then",
+            "EXUdense; EigenDense if joints are redundant at the start, as it uses no more of "
+            f"them than needed; EigenSparse above {MOST_DENSE} coordinates and constraints, "
+            "where it is 1.5 to 14 times faster",
         ),
         "ignore_singular": Setting("enable", "joints that are redundant take any share of a force"),
     },

@@ -8,8 +8,7 @@ from sim.registry.offers import SnippetWriter, Stepping, alone, comment
 
 DRIVES: Mapping[Drive, str] = {
     "prescribed": "Drive: an ObjectConnectorCoordinate between a NodePointGround and the angle of "
-    "the crank's node, velocityLevel = True, offset = speed; all start with the velocities that go "
-    "with it.",
+    "the crank's node, velocityLevel = True, offset = speed; all start with matching velocities.",
     "servo": "Drive: a damper between the ground and the angle of the crank's node, {gain:g} speed "
     "(sum over all bodies of mass L^2 + inertia), L the longest link, and a torque of damper times "
     "speed.",

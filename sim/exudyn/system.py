@@ -92,8 +92,8 @@ class PlaneSystem(EngineBodies):
         if name in self.looked:
             if anchor != (0.0, 0.0):
                 raise EngineError(
-                    f"{name}: something acts {anchor[1]:g} m beside it; exudyn's beams take forces "
-                    "on their line, give that link segments (--springs plain)"
+                    f"{name}: a force acts {anchor[1]:g} m beside it; exudyn's beams take "
+                    "forces on their line; give that link segments (--springs plain)"
                 )
             return self.add("MarkerNodeRigid", nodeNumber=self.node[name])
         place = [*anchor, 0.0]
@@ -108,8 +108,8 @@ class PlaneSystem(EngineBodies):
         from the start. Raises EngineError for the node of a beam, whose angle is no coordinate."""
         if name in self.looked and coordinate == ANGLE:
             raise EngineError(
-                f"{name}: something turns it, and the nodes of exudyn's beams have no angle; give "
-                "that link segments (--springs plain)"
+                f"{name}: a moment acts on it, and the nodes of exudyn's beams have no angle; "
+                "give that link segments (--springs plain)"
             )
         if name == GROUND:
             node, coordinate = self.add("NodePointGround"), 0

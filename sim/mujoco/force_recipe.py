@@ -45,7 +45,7 @@ print(",".join(["time_s", *(f"{{pin}}.{{axis}}_n" for pin in (*LOOPS, *HINGES) f
 inertial = np.zeros(model.nv)
 for step in range({steps}):
     # After mj_step the accelerations and forces in data still are those of the state before it,
-    # under RK4 of its last stage. mj_forward works them out at the state that data holds now.
+    # under RK4 of its last stage. mj_forward computes them at the state that data holds now.
     mujoco.mj_forward(model, data)
     # cfrc_int, what each body is given by its parent, is filled by this call alone. Its rows are
     # moment and force, in the world's axes, about the centre of mass of the whole tree: the force
@@ -54,7 +54,7 @@ for step in range({steps}):
     # What the bodies take of the crank's hinge for their acceleration, velocity and weight. The
     # armature that keeps the speed is no part of it, as qfrc_actuator or M qacc would have it.
     mujoco.mj_rne(model, data, 1, inertial)
-    # Loops, friction, loads and springs do their share; the drive does what is left.
+    # Loops, friction, loads and springs do their share; the drive does the rest.
     torque = inertial[crank] - data.qfrc_constraint[crank] - data.qfrc_actuator[crank]
     torque -= data.qfrc_passive[crank]
     forces = [sign * loop_force(name) for name, sign in LOOPS.values()]
@@ -102,7 +102,7 @@ def _check_held(scene: Scene) -> None:
         if not isinstance(load.characteristic, characteristics.Constant) or load.stroke != "both"
     ]
     faults = {
-        "nothing drives it, and the recipe reads the torque of a drive; take a scene of constant "
+        "nothing drives it, and the recipe reads the torque of a drive; use a scene of constant "
         "speed": scene.is_free,
         f"its driver is {scene.driver.joint}, and the recipe reads the torque of a crank; take a "
         "scene whose driver is a link at the ground": not scene.driver.is_crank,

@@ -85,7 +85,7 @@ TUNED = Profile(
             "over flywheel_ratio, as MuJoCo's stopping rule is scaled by the inertia of the whole "
             "model, flywheel included; low enough for cranks of 0.01 rad/s, and 25 % faster than 0",
         ),
-        "iterations": Setting(2, "pins give a quadratic problem: Newton is there after one"),
+        "iterations": Setting(2, "pins give a quadratic problem, which Newton solves in one"),
         "solref_timeconst_steps": Setting(
             options.STIFF_STEPS,
             "with dampratio, 3 dt of stiffness: at 2 dt (the least MuJoCo allows) RK4 resolves the "
@@ -109,12 +109,12 @@ TUNED = Profile(
         "free_timeconst_steps": Setting(
             FREE_STEPS,
             "replaces solref_timeconst_steps in free motion: loops that do not give way need "
-            "hardly be drawn back, and a gentle spring takes less from the energy",
+            "hardly any correction, and a soft spring takes less energy",
         ),
         "free_inverse_weight_share": Setting(
             FREE_WEIGHT_SHARE,
             "in free motion body_invweight0 times this once compiled: the give of loops follows "
-            "it, and solimp alone can not lower it under 0.01 %; MJCF has no word for it",
+            "it, and solimp alone can not lower it under 0.01 %; MJCF has no attribute for it",
         ),
         "islands": Setting("disable", "one system of loops: 7 % faster, same numbers"),
         "contact": Setting("disable", "nothing touches: 15 % faster, same numbers"),

@@ -12,8 +12,8 @@ LOOP_CLASS = "crankcheck-loop"
 DRIVES: Mapping[Drive, tuple[str, ...]] = {
     "prescribed": (
         "Drive: the crank's hinge has armature = {ratio} (sum over all bodies of mass L^2 + "
-        "inertia), L the longest link: a flywheel that keeps the speed it starts with (qvel). The "
-        "other hinges start with the speeds that go with it.",
+        "inertia), L the longest link: a flywheel that keeps the speed it starts with (qvel). "
+        "The other hinges start with the matching speeds.",
         "tolerance is {stop} / {ratio}: MuJoCo scales it by the inertia of the model, "
         "flywheel included, and would stop too early. A drive of your own needs neither.",
     ),
@@ -23,9 +23,9 @@ DRIVES: Mapping[Drive, tuple[str, ...]] = {
     ),
     "free": (
         "Drive: none. All hinges start with the angles and speeds of the start.",
-        "Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in it; "
-        "else for the bodies of the mechanism alone: without it loops give way more, and with so "
-        "gentle a solref by far more.",
+        "Once compiled, model.body_invweight0[:] *= {share}, in a model with nothing else in "
+        "it; else for the bodies of the mechanism alone: without it loops give way more, and "
+        "with so soft a solref by far more.",
     ),
 }
 """Drive of the crank in the measured runs."""
@@ -49,7 +49,7 @@ def mujoco_snippet(
     if complete["close"]:
         where += f" Close the loops at {complete['close']}."
     of_step = [
-        "Step and integrator are the whole model's: all that it holds is stepped so.",
+        "Step and integrator apply to the whole model.",
         _how_to_scale(complete, stepping, drive),
     ]
     if not float(complete["solref_timeconst_steps"]):

@@ -117,7 +117,7 @@ def _imported(spelling: str, module: str) -> object:
                 f"{Path.cwd()}; {suggestion(module, _modules(), 'modules there:')}"
             ) from None
         raise EngineError(
-            f"engine {spelling}: {module} can not be imported: {failure(error)}; mend that first"
+            f"engine {spelling}: {module} can not be imported: {failure(error)}; correct that first"
         ) from None
 
 
@@ -168,7 +168,8 @@ class BrokenContractError(EngineError):
         self.fault = fault
         self._parts = name, spelling, fault
         super().__init__(
-            f"engine {name}: {fault}; `crankcheck engines check {spelling}` says what it has to do"
+            f"engine {name}: {fault}; `crankcheck engines check {spelling}` prints what it has "
+            "to do"
         )
 
     def __reduce__(self) -> tuple[type[BrokenContractError], tuple[str, str, str]]:

@@ -55,9 +55,9 @@ def iterations(settings: Settings, model: space.SpaceModel) -> int:
     needed = chain_iterations(model)
     if needed > max(asked, MOST):
         raise EngineError(
-            f"{model.scene.name}: the joints of its segments need {needed} iterations in each step "
-            f"of pymunk, and {MOST} are done at most: what hangs on the segments is too heavy for "
-            "them; take fewer segments, another engine, or set so many iterations yourself"
+            f"{model.scene.name}: the joints of its segments need {needed} iterations in each "
+            f"step of pymunk, and {MOST} are done at most: the bodies on the segments are too "
+            "heavy; use fewer segments or another engine, or set so many iterations yourself"
         )
     return max(asked, needed)
 

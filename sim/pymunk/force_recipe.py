@@ -61,7 +61,7 @@ def _check_covered(scene: Scene) -> None:
         extra.append("a driver whose speed is not constant")
     if extra:
         raise EngineError(
-            f"{scene.name}: the recipe of pymunk leaves out {', '.join(extra)}; take them out, or "
+            f"{scene.name}: the recipe of pymunk leaves out {', '.join(extra)}; remove them, or "
             "run the scene itself with forces"
         )
     ties, pins = joints(scene), [*hinges(scene)]
@@ -140,8 +140,8 @@ FORCE_RECIPE: ForceRecipe = pymunk_force_recipe
 PROGRAM = '''\
 """Reactions and driving torque out of pymunk.
 
-pymunk tells of a joint the magnitude of its impulse, and no direction. What the step did to the
-momentum of the bodies tells the vectors: m (v' - v) / dt is the sum of the forces on a body.
+pymunk reports the magnitude of a joint's impulse, not its direction. The vectors follow from the
+momentum of the bodies: m (v' - v) / dt is the sum of the forces on a body.
 """
 
 import math

@@ -11,7 +11,7 @@ AS_SHIPPED = Profile(
         "iterations": Setting(10, "default"),
         "error_bias": Setting(
             0.0017970074436457143,
-            "default, (1 - 0.1f)^60: a joint error loses 10 % in 1/60 s, so errors fall as dt",
+            "default, (1 - 0.1f)^60: a joint error loses 10 % in 1/60 s, so errors shrink as dt",
         ),
         "damping": Setting(1.0, "default: none"),
         "lines": Setting("groove", "points on lines run in pymunk's groove joints"),
@@ -26,12 +26,14 @@ TUNED = Profile(
     {
         "iterations": Setting(
             150,
-            "error_bias matters only as far as the iteration converges: with 100 the heavy ram of "
-            "scene shaper breaks away at steps below 1/5000 turn, with 130 it holds; 14 of the 18 "
-            "shipped scenes need 20 at most (`crankcheck tune`), a quarter of the cost; a chain "
-            "of segments is given what it needs, iterations_of_segments",
+            "error_bias matters only as far as the iteration converges: with 100 the heavy ram "
+            "of scene shaper breaks away at steps below 1/5000 turn, with 130 it holds; 14 of "
+            "the 18 shipped scenes need 20 at most (`crankcheck tune`), a quarter of the cost; "
+            "a chain of segments gets what it needs, iterations_of_segments",
         ),
-        "error_bias": Setting(0.0, "remove the whole joint error in one step: errors fall as dt^2"),
+        "error_bias": Setting(
+            0.0, "remove the whole joint error in one step: errors shrink as dt^2"
+        ),
         "damping": Setting(1.0, "none"),
         "lines": Setting(
             "exact",
@@ -40,18 +42,18 @@ TUNED = Profile(
         ),
         "springs": Setting(
             "forces",
-            "pymunk's own springs pull as these do, but what they damp is the velocity before the "
-            "joints have corrected it, so errors of dampers fall as dt: of a slider-crank that one "
-            "brings to rest in 10 s the crank is off by 1.0e-3 rad at 1 ms, and by 3.9e-5 rad with "
-            "forces of the end of each step, whose errors fall as dt^2; those explode where "
+            "pymunk's own springs pull like these, but damp the velocity before the joints have "
+            "corrected it, so errors of dampers shrink as dt: of a slider-crank that one brings "
+            "to rest in 10 s the crank is off by 1.0e-3 rad at 1 ms, and by 3.9e-5 rad with "
+            "forces of the end of each step, whose errors shrink as dt^2; these explode if "
             "damping over mass exceeds 1 / dt, which pymunk's own never do",
         ),
         "free_paths": Setting(
             "arcs",
-            "in free motion pins are closed for the arcs of their points (see sim.pymunk.arcs): of "
-            "a four-bar that whirls through its limits for 10 s at 1 ms the place at the same "
-            "crank angle is off by 3e-5 in place of 1e-3, the energy drifts by 4e-5 in place of "
-            "7e-3; not in chains of segments",
+            "in free motion pins are closed for the arcs of their points (see sim.pymunk.arcs): "
+            "a four-bar that whirls through its limits for 10 s at 1 ms has an error of place "
+            "at the same crank angle of 3e-5 instead of 1e-3, a drift of energy of 4e-5 instead "
+            "of 7e-3; not in chains of segments",
         ),
     },
 )

@@ -8,12 +8,12 @@ from sim.registry.offers import SnippetWriter, Stepping, alone, comment
 
 DRIVES: Mapping[Drive, str] = {
     "prescribed": "Drive: the crank is a kinematic body with its origin on its pivot and a "
-    "constant angular_velocity; the others start with the velocities that go with it.",
+    "constant angular_velocity; the others start with matching velocities.",
     "servo": "Drive: a SimpleMotor between the crank and the ground, rate = speed.",
     "free": "Drive: none. Every link is a dynamic body, the crank pinned to the ground as well. "
-    "Positions are those of the start, velocities those of half a step later, v + a dt / 2 and "
-    "omega + alpha dt / 2; with those of the start itself errors fall as dt. What acts is set "
-    "before each step, with the size and the place of its end.",
+    "Positions are those of the start, velocities those of half a step later, v + a dt / 2 "
+    "and omega + alpha dt / 2; with those of the start itself errors shrink as dt. Loads "
+    "are set before each step, with the size and the place of its end.",
 }
 """Drive of the crank in the measured runs."""
 OF_FREE = {
@@ -24,8 +24,8 @@ OF_FREE = {
     ),
     ("free_paths", "arcs"): (
         "Pins: where error_bias is 0, anchors are set before each step for the arcs that they "
-        "go in it (crankcheck, sim/pymunk/arcs.py). Without that errors still fall as dt^2, "
-        "but places at the same crank angle are 10 to 400 times as far off."
+        "go in it (crankcheck, sim/pymunk/arcs.py). Without that errors still shrink as dt^2, "
+        "but those of places at the same crank angle are 10 to 400 times as large."
     ),
 }
 """Notes on free motion, by the setting that needs them."""

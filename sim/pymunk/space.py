@@ -185,8 +185,8 @@ def _check_drive(scene: Scene, drive: Drive) -> None:
     if driver.is_inner or drive == "servo":
         what = "between two moving bodies" if driver.is_inner else "by a servo"
         raise EngineError(
-            f"{scene.name}: pymunk has no motor along a line, and drives no slider {what}; drive "
-            "a slider on the ground, prescribed, or take another engine"
+            f"{scene.name}: pymunk has no motor along a line, and drives no slider {what}; "
+            "drive a slider on the ground, prescribed, or use another engine"
         )
     slider = scene.sliders[driver.slider]
     if slider.link is None and slider.mass_kg == 0.0:

@@ -9,7 +9,7 @@ SHIPPED = {
     "sweeps": Setting(1, "default: over all joints in a sub-step, with the errors of positions"),
     "velocity_sweeps": Setting(1, "default: after them, for velocities alone; driven motion"),
     "free_velocity_sweeps": Setting(1, "default: the same, in free motion"),
-    "motor_1_s": Setting(1e6, "gain of a motor by speed, per inertia: as good as any"),
+    "motor_1_s": Setting(1e6, "gain of a motor by speed, per inertia: as good as any other"),
 }
 AS_SHIPPED = Profile("as-shipped", "rapier", "Rapier's own defaults", SHIPPED)
 TUNED = Profile(
@@ -20,21 +20,24 @@ TUNED = Profile(
     | {
         "substeps": Setting(
             6,
-            "errors fall as their square; more cost more than they gain where rounding is as large",
+            "errors shrink with their square; more cost more than they gain, as rounding is as "
+            "large",
         ),
         "free_substeps": Setting(
             2,
-            "single precision loses what forces add to a velocity in a sub-step, so that more "
-            "drift faster; chosen on the shipped free scenes, of 2, 4, 6 and 10",
+            "single precision loses what forces add to a velocity in a sub-step, so more of "
+            "them drift faster; chosen from 2, 4, 6 and 10 on the shipped free scenes",
         ),
-        "sweeps": Setting(40, "where masses differ a hundredfold fewer leave joints open"),
+        "sweeps": Setting(40, "if masses differ a hundredfold, fewer leave joints open"),
         "velocity_sweeps": Setting(
             100,
-            "to the end they fit the positions at the sub-step's start; less are of first order, "
-            "none as rough as rounded positions; chosen with the other two on the shaper with its "
+            "many fit the positions at the sub-step's start; fewer are of first order, and none "
+            "as rough as rounded positions; chosen with the other two on the shaper with its "
             "heavy ram, tried on a four-bar with a rocker 1000 times as heavy, and at 100 rad/s",
         ),
-        "free_velocity_sweeps": Setting(0, "each costs energy: a hundred times the present loss"),
+        "free_velocity_sweeps": Setting(
+            0, "each costs energy: the loss would be a hundred times as large"
+        ),
     },
 )
 checked = checker(

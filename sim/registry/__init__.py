@@ -167,7 +167,7 @@ def _refuse_broken(name: str, package: str) -> None:
             return  # the importing code says what to do
         why = f"{type(error).__name__}: {str(error).partition(chr(10))[0][:300]}"
         named = [f"{key}={value}" for key, value in os.environ.items() if package.upper() in key]
-        cure = f"look at {', '.join(named)}, or install it again" if named else "install it again"
+        cure = f"check {', '.join(named)}, or install it again" if named else "install it again"
         raise BrokenEngineError(
             f"engine {name}: {package} can not be imported here: {why}; {cure}: "
             f"{install_command(name)}"

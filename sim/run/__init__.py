@@ -199,8 +199,8 @@ def run(
     blank = Run(**vars(told), status="ok", reason="", settings=told.asked)
     if scene.elastic:
         raise EngineError(
-            f"{scene.name}: {', '.join(scene.elastic)} bends, and an engine is given rigid "
-            "segments for it: `models.scene.cut_scenes.SegmentedScene(scene, count).rigid`"
+            f"{scene.name}: {', '.join(scene.elastic)} bends, and an engine gets rigid segments "
+            "for it: `models.scene.cut_scenes.SegmentedScene(scene, count).rigid`"
         )
     try:
         refuse_unknown_forces(scene, chosen, with_forces=with_forces, applying=applying)

@@ -76,13 +76,13 @@ def refuse_unknown_forces(
         if given and not getattr(engine, f"applies_{what}"):
             names = ", ".join(f"{what}.{name}" for name in given)
             raise EngineError(
-                f"{scene.name}: {engine.name} is given no {what} ({names}); take them out to run "
+                f"{scene.name}: {engine.name} gets no {what} ({names}) here; remove them to run "
                 "it, or use the reference alone"
             )
     touching = [name for name, pair in scene.cams.items() if pair.facets]
     segments = (
-        "it may be given links that do not stretch as rigid segments with springs between them "
-        "(--springs plain)"
+        "links that do not stretch can be rigid segments with springs between them (--springs "
+        "plain)"
     )
     for what, held, cure in (
         ("beams", scene.beams, segments),
@@ -100,18 +100,18 @@ def refuse_unknown_forces(
     for name, pair in scene.cams.items():
         if any(jump.lift or jump.velocity for jump in pair.profile.law.jumps):
             raise EngineError(
-                f"{scene.name}: the velocity of the law of cams.{name} jumps, an acceleration "
-                "without end, which no engine follows; give a law of continuous velocity"
+                f"{scene.name}: the velocity of the law of cams.{name} jumps, an infinite "
+                "acceleration, which no engine follows; give a law of continuous velocity"
             )
     if touching and with_forces:
         raise EngineError(
             f"{scene.name}: a cam by contact presses on its follower at the contact, and the "
-            f"reference along its way; run {engine.name} without forces, or with facets = 0"
+            f"reference along its path; run {engine.name} without forces, or with facets = 0"
         )
     if isinstance(scene.driver.law, driver.Controlled):
         raise EngineError(
-            f"{scene.name}: its driver is controlled, and {engine.name} is given none that gives "
-            'way; take law = "constant", or use the reference alone'
+            f"{scene.name}: its driver is controlled, and {engine.name} gets no such driver "
+            'here; use law = "constant", or use the reference alone'
         )
     rubbing = [
         f"friction.{name}"
@@ -120,8 +120,8 @@ def refuse_unknown_forces(
     ]
     if rubbing:
         raise EngineError(
-            f"{scene.name}: {engine.name} is given no such friction ({', '.join(rubbing)}); take "
-            "it out to run it, or use the reference alone"
+            f"{scene.name}: {engine.name} gets no such friction ({', '.join(rubbing)}) here; "
+            "remove it to run it, or use the reference alone"
         )
     if with_forces and engine.forces_of == "nothing":
         why = engine.no_forces and f": {engine.no_forces}"

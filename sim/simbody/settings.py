@@ -32,13 +32,14 @@ TUNED = Profile(
     | {
         "accuracy": Setting(
             1e-8,
-            "free motion keeps its phase to 1e-7, and mechanisms that all but reach a singular "
-            "position are 1e-9 off, where fixed steps of 5 ms come apart",
+            "free motion keeps its phase to 1e-7, and mechanisms that nearly reach a singular "
+            "position have errors of 1e-9, and come apart with fixed steps of 5 ms",
         ),
         "constraint_tolerance": Setting(
             1e-12,
-            "angles 1e-11 off at 1 ms, forces as much; with 1e-11 the projections show as jumps of "
-            "2e-10 from sample to sample, below it rounding of angles of many turns is in the way",
+            "errors of angles and of forces are 1e-11 at 1 ms; with 1e-11 the projections show "
+            "as jumps of 2e-10 from sample to sample, below it rounding of angles of many turns "
+            "dominates",
         ),
     },
 )

@@ -68,13 +68,13 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     "a hole": (text(*ROWS[:20], *ROWS[26:]), r"row 22.*gap.* 6 of them missing after t = .*fill"),
     "NaN": (cell(7, 2, "nan"), "row 9, column 'rocker_deg': found nan"),
     "infinite": (cell(7, 3, "-inf"), "row 9, column 'C_x_mm': found -inf"),
-    "a word": (cell(7, 2, "stalled"), "row 9, column 'rocker_deg': found 'stalled', no number"),
+    "a word": (cell(7, 2, "stalled"), "row 9, column 'rocker_deg': found 'stalled', not a number"),
     "a column of truths": (
         text(*(f"{row.split(',')[0]},{row.split(',')[1]},true,1" for row in ROWS)),
-        "row 2, column 'rocker_deg': found 'true', no number"),
+        "row 2, column 'rocker_deg': found 'true', not a number"),
     "a word below remarks and blank lines": (
         text("# a", *ROWS[:3], "", "  ", "# b", *ROWS[3:7], "0.1,x,2,3"),
-        "row 13, column 'crank_deg': found 'x', no number"),
+        "row 13, column 'crank_deg': found 'x', not a number"),
     "two lines of names": (
         text("t,theta,theta,x", *ROWS, header="time,crank,rocker,C"),
         "line 2 holds words and no numbers, below the names in line 1: .*join them, or put #"),
@@ -83,8 +83,8 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     "tabs that line columns up": (
         text(*ROWS).replace(b",", b"\t\t"), "line 1: column 2 has no name; .*separator = ' '"),
     "remarks of 300 kB": (b"# a solver\n" * 30_000 + text(*ROWS), "within the first .* leave out"),
-    "hexadecimal": (cell(7, 2, "0x1p3"), "row 9, column 'rocker_deg': found '0x1p3', no number"),
-    "digits in groups": (cell(7, 2, "1_000"), "row 9, column 'rocker_deg': found '1_000', no num"),
+    "hexadecimal": (cell(7, 2, "0x1p3"), "row 9, column 'rocker_deg': found '0x1p3', not a number"),
+    "digits in groups": (cell(7, 2, "1_000"), "row 9, column 'rocker_deg': found '1_000', not a"),
     "decimal commas": (
         text(
             *(row.replace(",", ";").replace(".", ",") for row in ROWS),
@@ -111,7 +111,7 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     "a quote that never closes": (cell(7, 2, '"7'), "row 9|quote"),
     "nothing of the scene": (
         header("crank_deg,rocker_deg,C_x_mm", "a,b,c"),
-        "no column is of scene fourbar-lecture-1, which has crank.*found .*write-map"),
+        "no column belongs to scene fourbar-lecture-1, which has crank.*found .*write-map"),
     "binary": (bytes(range(256)) * 99, "no text|not UTF-8 text|null bytes"),
     "a workbook called .csv": (b"PK\x03\x04" + bytes(999), "null bytes"),
     "UTF-16": (text(*ROWS).decode().encode("utf-16")[:-1], "UTF-16 text that is cut; save the"),
@@ -155,8 +155,8 @@ LARGE: dict[str, tuple[Made, str]] = {
 }  # fmt: skip
 SPECIAL: dict[str, tuple[Made, str]] = {
     "30 GB": (sparse, "30000000000 bytes; at most .* are read"),
-    "a pipe": (os.mkfifo, "a pipe, no plain file"),
-    "endless": (partial(os.symlink, "/dev/zero"), "a device, no plain file"),
+    "a pipe": (os.mkfifo, "a pipe, not a plain file"),
+    "endless": (partial(os.symlink, "/dev/zero"), "a device, not a plain file"),
     "a folder": (os.mkdir, "a folder"),
     "a link to nothing": (partial(os.symlink, "nothing"), "not there"),
     "nothing": (Path.exists, "not there"),  # which makes none
@@ -183,17 +183,17 @@ def cut_short(make: Callable[[Path], object], path: Path) -> None:
 PARQUET: dict[str, tuple[Made, str]] = {
     "nested": (
         partial(table, rocker_deg=[[1.0, 2.0]] * 61),
-        r"row 1, column 'rocker_deg': found .*1\.0.*no number"),
+        r"row 1, column 'rocker_deg': found .*1\.0.*not a number"),
     "nulls": (partial(table, rocker_deg=[1.0, None] * 30 + [2.0]), "row 2, .*the cell is empty"),
     "dates": (
         partial(table, rocker_deg=pa.array([1] * 61, pa.timestamp("ms"))),
-        "column 'rocker_deg': found .*1970.*no number",
+        "column 'rocker_deg': found .*1970.*not a number",
     ),
     "NaN": (partial(table, C_x_mm=np.full(61, np.nan)), "row 1, column 'C_x_mm': found nan .61 su"),
     "no rows": (partial(bare, time_s=pa.array([], pa.float64())), "no rows"),
     "no columns": (bare, "no columns|no rows|empty"),
-    "text that is none": (text(*ROWS), "no Parquet that can be read"),
-    "cut short": (partial(cut_short, table), "no Parquet that can be read"),
+    "text that is none": (text(*ROWS), "not readable as Parquet"),
+    "cut short": (partial(cut_short, table), "not readable as Parquet"),
     "empty": (b"", "empty"),
 }  # fmt: skip
 
@@ -274,7 +274,7 @@ WORKBOOKS: dict[str, tuple[Made, str]] = {
     "an empty cell": (partial(book, C9=None), "row 9, column 'rocker_deg': the cell is empty"),
     "merged cells": (partial(book, merged="C9:C12"), "row 10, column 'rocker_deg': the cell is em"),
     "a sheet of remarks": (
-        notes_first, "sheet 'Sheet': a header and no rows; .*say sheet = .log. in .file."),
+        notes_first, "sheet 'Sheet': a header and no rows; .*set sheet = .log. in .file."),
     "numbers for names": (
         partial(book, A1=0.5, B1=1.5, C1=2.5, D1=3.5), "sheet 'Sheet': row 1 holds numbers and no"),
     "hours": (partial(book, A2=time(0, 0, 1)), "row 2, column 'time_s': found '00:00:01'.*seconds"),
@@ -283,7 +283,7 @@ WORKBOOKS: dict[str, tuple[Made, str]] = {
     "a bomb": (bomb, "bytes when it is unpacked; at most .* are read|no workbook"),
     "a cell far away": (
         partial(sheet_of, inside=FAR), "cells up to row 300000 and column 1000; at most"),
-    "laughs": (partial(sheet_of, inside=LAUGHS), "no workbook that can be read"),
-    "text that is none": (text(*ROWS), "no workbook that can be read"),
-    "cut short": (partial(cut_short, book), "no workbook that can be read"),
+    "laughs": (partial(sheet_of, inside=LAUGHS), "not readable as a workbook"),
+    "text that is none": (text(*ROWS), "not readable as a workbook"),
+    "cut short": (partial(cut_short, book), "not readable as a workbook"),
 }  # fmt: skip

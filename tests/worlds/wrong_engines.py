@@ -431,18 +431,18 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
         "EC11", "there is no profile as-shipped",
         lambda e: replace(e, profiles={"tuned": e.profiles["tuned"]})),
     "other version": ("EC12", "version() gives '2.0'", lambda e: replace(e, version=lambda: "2.0")),
-    "takes everything": ("EC13", "error_bias = nan is taken", _careless),
-    "boundless": ("EC13", "error_bias = -inf is taken", _boundless),
-    "takes every count": ("EC13", "iterations takes each of 0, -1, 0.5", _boundless),
+    "takes everything": ("EC13", "error_bias = nan is accepted", _careless),
+    "boundless": ("EC13", "error_bias = -inf is accepted", _boundless),
+    "takes every count": ("EC13", "iterations accepts each of 0, -1, 0.5", _boundless),
     "deaf": ("EC14", "differ in iterations, error_bias", _deaf),
     "other setting held": (
-        "EC14", "iterations is asked to be 150, held 7",
+        "EC14", "iterations is requested as 150, found 7",
         of_facts(lambda f: {"settings": {**f.settings, "iterations": 7}})),
     "digits made up": (
-        "EC15", "precision is single, and angles are rounded to",
+        "EC15", "precision is single, but angles are rounded to",
         lambda e: replace(e, precision="single", floor=2e-6)),
     "digits lost": (
-        "EC15", "precision is double, and all angular velocities are numbers of 24 bits",
+        "EC15", "precision is double, but all angular velocities are numbers of 24 bits",
         rounded_to_single),
     "heavier": (
         "EC21", "has mass_kg",
@@ -455,26 +455,26 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
         "EC31", "after 60 steps step and record differ by",
         meddling(step_=lambda self, steps: steps + 1)),
     "counts samples": (
-        "EC32", "record(40, 8) says 5 steps done",
+        "EC32", "record(40, 8) reports 5 steps done",
         meddling(record_=lambda _, log, every: replace(log, steps_done=log.steps_done // every))),
     "restarts": ("EC33", "the second begins at 0 s", meddling(record_=_restarts)),
     "lends its memory": (
-        "EC34", "what read gave changes", meddling(read_=_lent, step_=_overwritten)),
+        "EC34", "the result of read changes", meddling(read_=_lent, step_=_overwritten)),
     "shared state": ("EC35", "it differs by", meddling(record_=_shared)),
     "noise": (
-        "EC36", "100 steps twice differ by",
+        "EC36", "two runs of 100 steps differ by",
         turning(lambda b: {"omega": b.omega + 1e-14 * NOISE.random(b.omega.shape)})),
     "wrapped": ("EC37", "jumps by", turning(lambda b: {"theta": np.remainder(b.theta, 2 * np.pi)})),
     "talks": ("EC38", "writes to the terminal: 'stepping'", meddling(step_=_prints)),
     "leaves files": (
         "EC38", "leaves files in the working folder: ENGINE_LOG.TXT", meddling(read_=_litters)),
     "velocities late": (
-        "EC41", "is that of -0.50 steps, and velocity_shift says +0.50",
+        "EC41", "belongs -0.50 steps from its sample, and velocity_shift is +0.50",
         turning(lambda b: {"omega": _late(b.omega)})),
     "slow one is off": (
-        "EC41", "is not that of its places", meddling(record_=of_log(_slow_one))),
+        "EC41", "does not fit its places", meddling(record_=of_log(_slow_one))),
     "shift unsaid": (
-        "EC41", "is that of +0.50 steps, and velocity_shift says +0.00",
+        "EC41", "belongs +0.50 steps from its sample, and velocity_shift is +0.00",
         of_facts(lambda f: {"velocity_shift": 0.0, "start": replace(f.start, lag_s=0.0)})),
     "lag unsaid": (
         "EC41", "Poses.lag_s is 0 steps",
@@ -486,7 +486,7 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "floor too low": (
         "EC51", "the crank is off by",
         lambda e: replace(rounded_to_single(e), precision="single", floor=1e-8)),
-    "third order": ("EC52", "shrink as dt^2.0, and order is 3", lambda e: replace(e, order=3)),
+    "third order": ("EC52", "shrink as dt^2.0, but order is 3", lambda e: replace(e, order=3)),
     "handed back": (
         "EC53", "placing is integrated with order 2",
         lambda _: _Integrated(drives=("prescribed", "servo"))),
@@ -513,10 +513,10 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "none after all": (
         "EC82", "all forces are NaN", of_forces(lambda f: f.each_series(lambda x: x * np.nan))),
     "torque unsaid": (
-        "EC82", "the driving torque is not finite at sample 0, and not unreported",
+        "EC82", "the driving torque is not finite at sample 0, and not in unreported",
         of_forces(lambda f: replace(f, torque=f.torque * np.nan))),
     "torque denied": (
-        "EC82", "the driving torque has numbers, and is unreported", _leaving_out(torque=True)),
+        "EC82", "the driving torque has numbers, but is in unreported", _leaving_out(torque=True)),
     "pin denied": (
         "EC82", "the force of pin C on rocker has numbers", _leaving_out(pins=frozenset("C"))),
     "unknown pin": ("EC82", "unreported has Q, and the", _leaving_out(pins=frozenset("Q"))),
@@ -526,17 +526,17 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
     "torque's sign": (
         "EC83", "crank: a moment of", of_forces(lambda f: replace(f, torque=-f.torque))),
     "a pin's sign": ("EC83", "coupler: ", _last_pin(lambda one, two: (-one, -two))),
-    "half a step late": ("EC84", "is that of -0.50 steps", of_forces(_half_a_step_late)),
+    "half a step late": ("EC84", "acts -0.50 steps", of_forces(_half_a_step_late)),
     "without loads": (
         "EC85", "a force over time in the ground's frame on rocker",
         of_exudyn(_with_scene(_without_loads))),
     "load's frame": (
         "EC85", "a constant force in the body's frame on rocker",
         of_loads(lambda load: replace(load, frame="ground"))),
-    "load late": ("EC85", "steps after its time", of_loads(_late_load)),
-    "loads not felt": ("EC85", "free, loads like its weight", _weightless_loads),
+    "load late": ("EC85", "steps after the load", of_loads(_late_load)),
+    "loads not felt": ("EC85", "free, loads equal to its weight", _weightless_loads),
     "loads not pushed": (
-        "EC85", "free, loads like its weight", _left_out_when_free("exudyn", loads={})),
+        "EC85", "free, loads equal to its weight", _left_out_when_free("exudyn", loads={})),
     "rubs less": ("EC86", "friction in C", of_exudyn(_with_scene(_rubbing_less))),
     "rubs nothing": (
         "EC86", "friction in C: free, it takes", _left_out_when_free("mujoco", friction={})),
@@ -556,7 +556,7 @@ FAULTS: Mapping[str, tuple[str, str, Fault]] = {  # name: clause, words, fault
         "EC92", "a spring between a point and a slider: the body swings about",
         of_springs(_elsewhere)),
     "leaking": (
-        "EC93", "of the energy that goes back and forth is gained or lost", meddling(_damped(0.5))),
+        "EC93", "of the exchanged energy is gained or lost", meddling(_damped(0.5))),
     "deaf to its speed": (
         "EC94", "a torque over the angular velocity of its link: after", of_loads(_deaf_load)),
 }  # fmt: skip

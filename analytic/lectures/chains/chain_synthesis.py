@@ -55,19 +55,19 @@ def _joints_that_give(links: int, mobility: int) -> int:
     """Return the number of joints. Raises CrankcheckError where no chain exists."""
     if not FEWEST <= links <= MOST:
         raise CrankcheckError(
-            f"{links} links: chains are enumerated of {FEWEST} to {MOST} links; take so many"
+            f"{links} links: chains of {FEWEST} to {MOST} links are enumerated; use such a number"
         )
     if not 0 <= mobility <= MOST_MOBILITY:
         raise CrankcheckError(
-            f"mobility {mobility}: chains are enumerated of mobility 0 to {MOST_MOBILITY}"
+            f"mobility {mobility}: chains of mobility 0 to {MOST_MOBILITY} are enumerated"
         )
     joints = joints_for(links, mobility)
     if joints is None or joints < links:
         able = [n for n in range(FEWEST, MOST + 1) if assortments(n, mobility)]
         raise CrankcheckError(
-            f"no closed chain of {links} links has mobility {mobility}: W = 3 (n - 1) - 2 p asks "
-            f"for {(3 * (links - 1) - mobility) / 2:g} joints; with this mobility there are chains "
-            f"of {', '.join(map(str, able))} links"
+            f"no closed chain of {links} links has mobility {mobility}: W = 3 (n - 1) - 2 p "
+            f"requires {(3 * (links - 1) - mobility) / 2:g} joints; with this mobility there "
+            f"are chains of {', '.join(map(str, able))} links"
         )
     return joints
 

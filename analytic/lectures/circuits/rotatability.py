@@ -132,8 +132,8 @@ class _Follower:
             if np.max(np.abs(np.diff(angles[name])), initial=0.0) > 0.5 * math.pi:
                 raise CrankcheckError(
                     f"{scene.name}: {name} turns too fast to be followed, by more than a right "
-                    "angle within an eighth of a degree of the driver: it passes a singular "
-                    "position as good as; change a length"
+                    "angle within an eighth of a degree of the driver: it practically passes a "
+                    "singular position; change a length"
                 )
         return _Follower(legs, arc, theta, angles, period)
 

@@ -124,7 +124,7 @@ class _Table:
     def draw(self, part: Group | Bridge) -> str:
         """Draw a group or a redundant link; return the reason where it can not be drawn."""
         if missing := self._missing(part):
-            return f"{_title(part)}: hangs on {missing}, which is not determined"
+            return f"{_title(part)}: depends on {missing}, which is not determined"
         if isinstance(part, Bridge):
             self._bridge(part)
             return ""

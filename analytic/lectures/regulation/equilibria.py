@@ -62,8 +62,8 @@ def equilibria(scene: Scene) -> Equilibria:
     for load in scene.loads.values():
         if load.over == "time" and not isinstance(load.characteristic, Constant):
             raise CrankcheckError(
-                f"{scene.name}: loads.{load.name} follows time, and under it nothing rests; leave "
-                "it out, or give it a constant size"
+                f"{scene.name}: loads.{load.name} follows time, and nothing rests under it; "
+                "leave it out, or give it a constant size"
             )
     free = loosened(scene)
     circuits, start = circuits_of(free), free.driver.law.at(np.zeros(1))[0]

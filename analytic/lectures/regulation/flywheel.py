@@ -110,8 +110,8 @@ def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywhe
         machine = bare.machine  # turning as its loads turn it
     if bare is not None and bare.delta <= delta:
         raise CrankcheckError(
-            f"{machine.scene.name}: no flywheel is needed for a coefficient of {delta:g}: without "
-            f"one more it is {bare.delta:.4g} already; give a smaller one"
+            f"{machine.scene.name}: no flywheel is needed for a coefficient of {delta:g}: the "
+            f"machine has {bare.delta:.4g} without it; give a smaller one"
         )
     least = _heavy(machine, delta)
     near = _classical(least, delta)
@@ -121,11 +121,10 @@ def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywhe
 
 def _check(delta: float) -> None:
     if delta == 0.0:
-        why = "an even run takes a flywheel without end; give one above 0, such as 0.02"
+        why = "an even run needs an infinite flywheel; give one above 0, such as 0.02"
     elif not 0.0 < delta < 2.0:  # or no number
         why = (
-            "a machine that goes on all the time has one above 0 and below 2, usual ones are 0.005 "
-            "to 0.2"
+            "a machine that keeps turning has one above 0 and below 2, usual ones are 0.005 to 0.2"
         )
     elif delta < LEAST:
         why = f"rounding hides so small a fluctuation of speed; give {LEAST:g} or more"
@@ -150,7 +149,7 @@ def _heavy(machine: TurningMachine, delta: float) -> SteadyCycle:
         inertia *= 2.0 * cycle.delta / (EVEN * delta)
     raise CrankcheckError(
         f"{machine.scene.name}: no flywheel up to {inertia:.3g} kg m^2 makes it run with a "
-        f"coefficient of {delta:g}; look at its loads"
+        f"coefficient of {delta:g}; check its loads"
     )
 
 

@@ -279,9 +279,9 @@ class _Newton:
         mean = self.wanted.mean_rad_s
         of = "" if mean is None else f" with a mean speed of {mean:.6g} rad/s"
         return (
-            f"{scene.name}: no steady cycle{of}: its masses hold too little energy, and it comes "
-            f"to rest near {scene.driver.link} {where:.4g} deg; put a flywheel on, as large as "
-            "a wanted coefficient of fluctuation takes"
+            f"{scene.name}: no steady cycle{of}: its masses hold too little energy, and it "
+            f"comes to rest near {scene.driver.link} {where:.4g} deg; add a flywheel, as large "
+            "as the requested coefficient of fluctuation needs"
         )
 
 

@@ -44,8 +44,8 @@ def cycle_angle(scene: Scene) -> float:
     if scene.coulomb_joints:
         raise CrankcheckError(
             f"{scene.name}: friction.{scene.coulomb_joints[0]}: Coulomb's friction follows from "
-            "the reactions, and no torque over angle and speed stands for it; give torque_n_m or "
-            "force_n in its place"
+            "the reactions, and no torque over angle and speed represents it; give torque_n_m "
+            "or force_n in its place"
         )
     own = repeats_after(scene)
     periods = [p for load in scene.loads.values() if (p := _period(scene, load)) is not None]
@@ -58,8 +58,8 @@ def cycle_angle(scene: Scene) -> float:
     told = few([f"{math.degrees(p):.6g} deg" for p in periods], 6)
     raise CrankcheckError(
         f"{scene.name}: loads over the angle repeat after {told}, the mechanism after "
-        f"{math.degrees(own):.6g} deg; within {MOST_TURNS} times that they never meet, so that "
-        "there is no cycle; give periods that go into a common angle"
+        f"{math.degrees(own):.6g} deg; they have no common multiple within {MOST_TURNS} times "
+        "that, so there is no cycle; give periods that have one"
     )
 
 
@@ -67,8 +67,8 @@ def _check_turns(scene: Scene) -> None:
     refuse_other_than_cranked(scene, "a cycle of speed")
     if not (scene.is_free or isinstance(scene.driver.law, ConstantSpeed)):
         raise CrankcheckError(
-            f"{scene.name}: its driver swings or speeds up by its law, and a cycle of speed is "
-            'that of a driver that turns on; give it law = "constant", or "free"'
+            f"{scene.name}: its driver swings or speeds up by its law, and a cycle of speed "
+            'needs a driver that keeps turning; give it law = "constant", or "free"'
         )
     ranges = reach(scene)
     if ranges != [(-math.pi, math.pi)]:
@@ -105,8 +105,8 @@ def _check_periods(scene: Scene, whole_rad: float) -> None:
         if period is not None and whole_rad / period > MOST_PERIODS:
             raise CrankcheckError(
                 f"{scene.name}: loads.{load.name} repeats after {math.degrees(period):.6g} deg, "
-                f"{whole_rad / period:.6g} times in a cycle of {math.degrees(whole_rad):.6g} deg; "
-                f"at most {MOST_PERIODS} are worked out: give a longer period, or its mean"
+                f"{whole_rad / period:.6g} times in a cycle of {math.degrees(whole_rad):.6g} "
+                f"deg; at most {MOST_PERIODS} are computed: give a longer period, or its mean"
             )
 
 

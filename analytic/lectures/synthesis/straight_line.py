@@ -173,7 +173,7 @@ def hoeken(
     own = MOST_SHARE if share is None else share
     if not LEAST_SHARE <= own <= MOST_SHARE:
         raise CrankcheckError(
-            f"Hoeken's straight part was requested over {own:g} of the crank's turn; ask for "
+            f"Hoeken's straight part was requested over {own:g} of the crank's turn; give "
             f"{LEAST_SHARE:g} to {MOST_SHARE:g}"
         )
     if deviation is not None:
@@ -216,8 +216,8 @@ def _share_of(deviation: float, even: Even) -> float:
         return high
     if not keeps(low):
         raise CrankcheckError(
-            f"a deviation of {deviation:.3g} of the length was requested; Hoeken's linkage keeps "
-            f"it over less than {LEAST_SHARE:g} of the crank's turn; ask for more"
+            f"a deviation of {deviation:.3g} of the length was requested; Hoeken's linkage "
+            f"keeps it over less than {LEAST_SHARE:g} of the crank's turn; allow more"
         )
     while high - low > 1e-4:
         middle = 0.5 * (low + high)

@@ -119,8 +119,8 @@ def longest(four_bar: CouplerCurve, centre_rad: float, deviation: float) -> Stra
         bad = half
     if good == 0.0:
         raise CrankcheckError(
-            f"a straight part with a deviation of {deviation:.3g} of its length was requested; ask "
-            "for more, or for another linkage"
+            f"a straight part with a deviation of {deviation:.3g} of its length was requested; "
+            "allow more, or use another linkage"
         )
     for _ in range(HALVINGS):
         half = 0.5 * (good + bad)

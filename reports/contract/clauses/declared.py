@@ -18,7 +18,7 @@ PROFILES = ("as-shipped", "tuned")
 NAME = re.compile(r"[A-Za-z_]\w{0,59}")
 NONSENSE = "no-such-choice"
 UNLIKELY = (0, -1, 0.5)
-"""Whole numbers that one setting or another may have, and a broken one: none has them all."""
+"""Whole numbers and a broken one, of which every setting refuses at least one."""
 FINE, ROUGH_SAMPLES = 8000, 400
 """Steps in a turn in which a motion is smooth to 1e-13 rad, and the samples of it."""
 SMOOTH = 1e-3
@@ -28,7 +28,7 @@ SMOOTH = 1e-3
 @clause(
     "EC11",
     "profiles as-shipped and tuned are complete, and say why",
-    "A setting that is not reported can not be repeated, nor compared.",
+    "A result with an unknown setting can be neither repeated nor compared.",
     "Give every profile all settings that influence accuracy, each as Setting(value, reason) "
     "with an int, a float or a str.",
     of_scenes=False,
@@ -44,23 +44,25 @@ def _profiles(subject: Subject) -> Iterator[str]:
         yield f"not every profile has {', '.join(sorted(map(str, odd)))}"
     for name, profile in profiles.items():
         if profile.name != name or profile.engine != subject.engine.name:
-            yield f"profile {name} says that it is {profile.name} of {profile.engine}"
+            yield f"profile {name} names itself {profile.name} of {profile.engine}"
         if not profile.summary:
             yield f"profile {name} has no summary"
         for setting, value in profile.settings.items():
             if not isinstance(setting, str) or not NAME.fullmatch(setting):
-                yield f"profile {name}: setting {shown(setting)} is no word of letters, digits, _"
+                yield (
+                    f"profile {name}: setting {shown(setting)} is not a word of letters, digits, _"
+                )
             if not value.reason:
                 yield f"profile {name}: {setting} has no reason"
             if type(value.value) not in (int, float, str):
-                yield f"profile {name}: {setting} is {shown(value.value)}, no int, float or str"
+                yield f"profile {name}: {setting} is {shown(value.value)}, not an int, float or str"
 
 
 @clause(
     "EC12",
-    "the version is a text, the same in the facts",
-    "Results of two versions are kept apart by it.",
-    "Return the version of what steps, and hand the same to Facts.",
+    "the version is a text, and the facts state the same",
+    "It separates the results of two versions.",
+    "Return the version of the library that steps, and pass the same to Facts.",
     of_scenes=False,
 )
 def _version(subject: Subject) -> Iterator[str]:
@@ -74,7 +76,7 @@ def _version(subject: Subject) -> Iterator[str]:
 @clause(
     "EC13",
     "a wrong setting is refused with SettingError",
-    "A value that an engine ignores is taken for one that it uses.",
+    "A value that the engine ignores looks like one that it uses.",
     "In check, call check_ranges for the numbers and check_choices for the words.",
     of_scenes=False,
 )
@@ -86,9 +88,9 @@ def _settings(subject: Subject) -> Iterator[str]:
     for name, value in settings.items():
         for wrong in _wrong(value):
             if _taken(subject, {**settings, name: wrong}):
-                yield f"{name} = {shown(wrong)} is taken"
+                yield f"{name} = {shown(wrong)} is accepted"
         if type(value) is int and all(_taken(subject, {**settings, name: n}) for n in UNLIKELY):
-            yield f"{name} takes each of {', '.join(map(shown, UNLIKELY))}"
+            yield f"{name} accepts each of {', '.join(map(shown, UNLIKELY))}"
 
 
 def _wrong(value: SettingValue) -> list[SettingValue]:
@@ -127,9 +129,9 @@ def _refused_at_open(subject: Subject, settings: dict[str, SettingValue]) -> boo
 @clause(
     "EC14",
     "the reported settings are the requested ones, and profiles that differ run differently",
-    "A lost setting gives one result two names, or two results one.",
-    "Read Facts.settings from the engine itself, and check that open hands on each of them; where "
-    "it holds another value than requested, say so in Engine.holds.",
+    "A lost setting gives one result two names, or two results one name.",
+    "Read Facts.settings from the engine itself, and check that open passes on each of them; if "
+    "it holds another value than requested, state it in Engine.holds.",
 )
 def _told_back(subject: Subject) -> Iterator[str]:
     for name in subject.engine.profiles:
@@ -139,7 +141,9 @@ def _told_back(subject: Subject) -> Iterator[str]:
         for setting, value in subject.engine.holds(given, subject.dt_s(), "prescribed").items():
             held = facts.settings.get(setting)
             if not _same(held, value, max(SAME, rounding_of(subject.engine.precision))):
-                yield f"profile {name}: {setting} is asked to be {shown(value)}, held {shown(held)}"
+                yield (
+                    f"profile {name}: {setting} is requested as {shown(value)}, found {shown(held)}"
+                )
     for one, other in combinations(subject.engine.profiles, 2):
         yield from _felt(subject, one, other)
 
@@ -154,8 +158,8 @@ def _felt(subject: Subject, one: str, other: str) -> Iterator[str]:
     if np.array_equal(first, second, equal_nan=True):
         names = [name for name in asked if asked[name] != others[name]]
         yield (
-            f"profiles {one} and {other} differ in {few(names, 4)}, and {STEPS} steps are the same "
-            "to the bit"
+            f"profiles {one} and {other} differ in {few(names, 4)}, and {STEPS} steps are equal "
+            "to the last bit"
         )
 
 
@@ -169,7 +173,7 @@ def _same(held: object, asked: SettingValue, rounding: float) -> bool:
 @clause(
     "EC15",
     "numbers have the digits that `precision` states",
-    "Limits for fewer digits hide faults, and those for more find one in every number.",
+    "Limits for fewer digits hide faults; limits for more find a fault in every number.",
     "Set Engine.precision: single where the engine's own numbers have 24 bits, else double.",
     of_scenes=False,
 )
@@ -180,13 +184,13 @@ def _digits(subject: Subject) -> Iterator[str]:
         rough = max(roughness(body.theta) for body in bodies)
         if rough < SMOOTH * EPSILON["single"]:
             yield (
-                f"precision is single, and angles are rounded to {rough:.1g} rad: numbers of 24 "
+                f"precision is single, but angles are rounded to {rough:.1g} rad: numbers of 24 "
                 f"bits are to {EPSILON['single']:.1g}"
             )
         return
     turning = [body.omega for body in bodies if np.ptp(body.omega) > 0.0]
     if turning and all(np.array_equal(omega, np.float32(omega)) for omega in turning):
-        yield "precision is double, and all angular velocities are numbers of 24 bits"
+        yield "precision is double, but all angular velocities are numbers of 24 bits"
 
 
 def roughness(series: Array) -> float:

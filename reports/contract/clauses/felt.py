@@ -20,7 +20,7 @@ from sim.engine import Poses
 from sim.engine.measure import energy, motion
 
 SHARE = 0.98
-"""Share of all samples that have to be within `OFF`: where a joint turns back friction jumps, and
+"""Share of all samples that have to be within `OFF`: friction jumps where a joint turns back, and
 its value there depends on rounding."""
 BRAKED, BRAKE_OFF = 0.3, 0.05
 """Kinetic energy that friction takes from a free motion, over that of the start, and its largest
@@ -32,16 +32,16 @@ CENTRE = "centre of mass"
 
 @clause(
     "EC85",
-    "loads act as the scene has them, where applies_loads is True",
-    "A load left out, late, or in another frame makes another machine.",
-    "Apply each load of scene.loads at every step, at its point, in its frame, as large as "
-    "load_magnitudes says at the time that forces belong to, in free motion too; or leave "
-    "applies_loads False.",
+    "loads act as the scene states, if applies_loads is True",
+    "A load that is missing, late or in another frame makes another machine.",
+    "Apply each load of scene.loads at every step, in free motion too: at its point, in its "
+    "frame, with the size of load_magnitudes at the time of the forces; or leave applies_loads "
+    "False.",
 )
 def _loads(subject: Subject) -> Iterator[str]:
     engine, scene = subject.engine, subject.scene
     if not engine.applies_loads:
-        raise NotTriedError("applies_loads says that it takes no loads")
+        raise NotTriedError("applies_loads is False: it takes no loads")
     if engine.forces_of == "nothing":
         yield from _as_weight(subject)
         return
@@ -81,7 +81,9 @@ def _as_weight(subject: Subject) -> Iterator[str]:
     fallen = [numbers(_freed(subject.in_scene(way)), bodies(scene))[-1] for way in ways]
     off, whole = (float(np.abs(fallen[0] - other).max()) for other in fallen[1:])
     if not off <= OFF * whole:
-        yield f"free, loads like its weight move it otherwise than gravity: {off / whole:.2g} apart"
+        yield (
+            f"free, loads equal to its weight and gravity move it differently, by {off / whole:.2g}"
+        )
 
 
 def _weighed(scene: Scene, pull: float, down_rad: float) -> Scene:
@@ -103,15 +105,15 @@ def _weighed(scene: Scene, pull: float, down_rad: float) -> Scene:
 
 @clause(
     "EC86",
-    "constant friction acts as the scene has it, where applies_constant_friction is True",
-    "Friction that pushes along, or on one body alone, is none.",
-    "Let it act on both bodies of the joint, against the speed that each has as seen from the "
-    "other; or leave applies_constant_friction False.",
+    "constant friction acts as the scene states, if applies_constant_friction is True",
+    "Friction opposes the relative motion of two bodies, and acts on both.",
+    "Let it act on both bodies of the joint, against their relative speed; or leave "
+    "applies_constant_friction False.",
 )
 def _friction(subject: Subject) -> Iterator[str]:
     engine, scene = subject.engine, subject.scene
     if not engine.applies_constant_friction:
-        raise NotTriedError("applies_constant_friction says that it takes no friction")
+        raise NotTriedError("applies_constant_friction is False: it takes no friction")
     subject.reports_forces()
     size = 0.2 * _size(scene)
     pins = [point for point, names in joined_at(scene).items() if len(names) == 2]
@@ -139,7 +141,7 @@ def _unbraked(subject: Subject, joint: str) -> Iterator[str]:
     taken_j = float(energy_j[-1] - energy(rubbing, braked).kinetic_j[-1])
     work_j = size * _way(light, joint, braked)
     if not abs(taken_j - work_j) <= BRAKE_OFF * work_j:
-        yield f"free, it takes {taken_j:.2g} J of the motion, and its work is {work_j:.2g} J"
+        yield f"free, it takes {taken_j:.2g} J from the motion, and its work is {work_j:.2g} J"
 
 
 def _way(scene: Scene, joint: str, poses: Poses) -> float:
@@ -183,14 +185,14 @@ def _unfelt(subject: Subject, plain: Forces, changed: Scene, share: float) -> It
         return
     worst = max(off, key=lambda name: off[name])
     if not off[worst] <= OFF:
-        yield f"the {worst} changes otherwise than it has to, by {off[worst]:.2g} of the largest"
+        yield f"the change of the {worst} is wrong by {off[worst]:.2g} of the largest"
         return
     if share < 1.0:
         return  # it jumps, which has no time to tell
     late = late_by(more, wanted, subject.dt_s(STEPS))
     worst = max(late, key=lambda name: abs(late[name]), default="")
     if worst and not abs(late[worst]) <= LATE:
-        yield f"the {worst} feels it {late[worst]:+.2f} steps after its time"
+        yield f"the {worst} responds {late[worst]:+.2f} steps after the load"
 
 
 def _change(one: Forces, other: Forces) -> dict[str, Array]:

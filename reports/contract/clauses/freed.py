@@ -52,8 +52,8 @@ SPEED_OFF = 0.02
 
 @clause(
     "EC91",
-    "springs are reported as the scene has them, where applies_springs is True",
-    "A spring that is not there, or another, is another machine; run refuses it.",
+    "the springs of the scene are reported, if applies_springs is True",
+    "A missing or different spring makes another machine; run refuses it.",
     "Give Facts.springs: rate, damping and free length or angle of each spring of "
     "scene.springs, as the engine holds them; or leave applies_springs False.",
     of_scenes=False,
@@ -72,11 +72,11 @@ def _held(subject: Subject) -> Iterator[str]:
 
 @clause(
     "EC92",
-    "springs pull as their rate, damping, free length and ends say, where they are applied",
+    "springs pull by their rate, damping, free length and ends, if they are applied",
     "These alone determine frequency, decay and rest of a mechanism on springs.",
-    "Pull q back with rate (q - free) + damping q': q the distance of two points (line_ends "
-    "says where on which bodies), the angle of a pin's second body against the first with its "
-    "whole turns, or the displacement of a slider; alike on both bodies.",
+    "Pull q back with rate (q - free) + damping q', on both bodies alike: q is the distance of "
+    "two points (line_ends gives them on their bodies), the angle of a pin's second body "
+    "against the first with its whole turns, or the displacement of a slider.",
     of_scenes=False,
 )
 def _swings(subject: Subject) -> Iterator[str]:
@@ -104,7 +104,7 @@ def _each_spring(
     """Yield faults of the springs of each kind that an engine can hold: one without sliders has
     none there."""
     if not subject.engine.applies_springs:
-        raise NotTriedError("applies_springs says that it takes no springs")
+        raise NotTriedError("applies_springs is False: it takes no springs")
     refusals = []
     for one in (every := list(oscillators())):
         try:
@@ -119,7 +119,7 @@ def _each_spring(
 @clause(
     "EC93",
     "free motion keeps its energy for a period, up to an error that shrinks with the step",
-    "Energy that an engine adds or takes acts like a motor or a brake that the scene has not.",
+    "Energy that an engine adds or takes acts like a motor or a brake that is not in the scene.",
     "Look for damping that is left on, for joints whose correction moves bodies, and for "
     "positions that are moved with velocities of another instant; or refuse drive free.",
 )
@@ -127,8 +127,8 @@ def _energy(subject: Subject) -> Iterator[str]:
     coarse, fine = (_drift(subject, steps) for steps in ENERGY_STEPS)
     if not fine <= ENERGY_OFF and not fine <= SHRUNK * coarse:
         yield (
-            f"free, {fine:.2g} of the energy that goes back and forth is gained or lost in a "
-            f"period of {ENERGY_STEPS[1]} steps, and {coarse:.2g} in one of {ENERGY_STEPS[0]}"
+            f"free, {fine:.2g} of the exchanged energy is gained or lost in a period of "
+            f"{ENERGY_STEPS[1]} steps, and {coarse:.2g} in one of {ENERGY_STEPS[0]}"
         )
 
 
@@ -147,10 +147,10 @@ def _drift(subject: Subject, steps: int) -> float:
 
 @clause(
     "EC94",
-    "loads over a speed are as large as the speed of their instant makes them",
+    "a load over a speed has the size of the speed at its instant",
     "A motor that does not feel its own speed never settles.",
-    "Ask Load.size at each step for what load_magnitudes does not know ahead, with the angular "
-    "velocity of the load's own body, and the speed of its slider.",
+    "load_magnitudes does not know these loads ahead: call Load.size at each step, with the "
+    "angular velocity of the load's own body or the speed of its slider.",
     of_scenes=False,
 )
 def _by_speed(subject: Subject) -> Iterator[str]:
@@ -200,5 +200,5 @@ def _unsettled(
         worst = int(np.argmax(np.nan_to_num(off, nan=math.inf)))
         yield (
             f"{words}: after {poses.time_s[worst]:.3g} s the speed is {found[worst]:.4g}, and "
-            f"{wanted[worst]:.4g} is what it settles by"
+            f"its closed form {wanted[worst]:.4g}"
         )

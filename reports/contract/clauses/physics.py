@@ -50,10 +50,10 @@ PAIR_OFF = 0.01
 
 @clause(
     "EC51",
-    "a prescribed crank is where the driver's law has it",
+    "a prescribed crank follows the driver's law",
     "An error of the crank is an error of all links; a motor of limited gain is a servo.",
-    "Move the crank yourself: drive.angles, drive.chords and drive.pushes say where to and "
-    "how fast; or refuse the drive with EngineError.",
+    "Move the crank yourself: drive.angles, drive.chords and drive.pushes give its places and "
+    "speeds; or refuse the drive with EngineError.",
 )
 def _crank(subject: Subject) -> Iterator[str]:
     law = subject.scene.driver.law
@@ -84,14 +84,14 @@ def _drive_fault(subject: Subject, turns: float) -> str:
 
 @clause(
     "EC52",
-    "errors of place shrink with the step, at the order that is declared, down to a floor",
-    "verify takes an error for a fault of the step or of the model by this order.",
-    "Set Engine.order to the measured order; if order 1 is not meant, look for places moved with "
-    "the velocity of another instant.",
+    "errors of place shrink with the step, at the declared order, down to a floor",
+    "By this order verify separates errors of the step from errors of the model.",
+    "Set Engine.order to the measured order; if order 1 is not intended, look for places moved "
+    "with the velocity of another instant.",
 )
 def _shrinking(subject: Subject) -> Iterator[str]:
     if subject.engine.placing(subject.settings()) == "solved":
-        raise NotTriedError("placing is solved, where errors need not shrink")
+        raise NotTriedError("placing is solved, and its errors need not shrink")
     errors, unit = [], ""
     for steps in STEPS:
         worst, fault = _worst_place(subject, steps)
@@ -108,7 +108,7 @@ def _shrinking(subject: Subject) -> Iterator[str]:
         yield f"errors of place grow as the step shrinks: {told} at {STEPS} steps a turn"
     elif seen.trend == "shrinks" and seen.order < order - SLACK:
         yield (
-            f"errors of place shrink as dt^{seen.order:.1f}, and order is {order}: {told} at "
+            f"errors of place shrink as dt^{seen.order:.1f}, but order is {order}: {told} at "
             f"{STEPS} steps a turn"
         )
 
@@ -126,9 +126,9 @@ def _worst_place(subject: Subject, steps: int) -> tuple[Error | None, str]:
 @clause(
     "EC53",
     "places are found as `placing` states",
-    "Places nearer to the reference than steps allow were taken from it.",
-    "Let Engine.placing give solved where joints are solved for in each step; raise "
-    "Engine.order where errors shrink faster than it says.",
+    "Places nearer to the reference than the steps allow were copied from it.",
+    "Set Engine.placing to solved if each step solves the joints; raise Engine.order if errors "
+    "shrink faster than it states.",
 )
 def _placing(subject: Subject) -> Iterator[str]:
     engine = subject.engine
@@ -153,12 +153,12 @@ def _placing(subject: Subject) -> Iterator[str]:
     "EC54",
     "errors depend on the steps in a turn, not on the speed or its sign",
     "Advice for one speed is carried over to others.",
-    "Name settings that are times of their own, such as a damping, in Engine.in_seconds.",
+    "List in Engine.in_seconds the settings with a time of their own, such as a damping.",
 )
 def _speed(subject: Subject) -> Iterator[str]:
     law = subject.scene.driver.law
     if timed := subject.engine.in_seconds(subject.settings()):
-        raise NotTriedError(f"in_seconds says that {', '.join(timed)} has a time of its own")
+        raise NotTriedError(f"in_seconds lists {', '.join(timed)}, with a time of its own")
     if not isinstance(law, ConstantSpeed) or any(subject.scene.gravity_m_s2):
         raise NotTriedError("gravity, or the driver's law, has a time of its own")
     plain = pure_errors(subject)
@@ -189,15 +189,15 @@ def unlike(
         one, two = plain.get(name, math.inf), other.get(name, math.inf)
         least = none if name in PLACES else rough
         if not (one <= TWICE * two + least and two <= TWICE * one + least):
-            yield f"{words}, {name} is off by {two:.2g}, and {one:.2g} as it is"
+            yield f"{words}, {name} is off by {two:.2g}, and by {one:.2g} unchanged"
 
 
 @clause(
     "EC55",
     "free motion follows masses, speeds and gravity",
     "A free mechanism that falls differently is not the scene.",
-    "Set the engine's gravity to scene.gravity_m_s2, for every body, give each its own mass "
-    "and inertia, and take no speed away; or refuse drive free with EngineError.",
+    "Set the engine's gravity to scene.gravity_m_s2, for every body, give each its own mass and "
+    "inertia, and damp nothing; or refuse drive free with EngineError.",
 )
 def _gravity(subject: Subject) -> Iterator[str]:
     fall_s = FALL_STEPS * subject.dt_s()
@@ -241,17 +241,17 @@ def _centres(scene: Scene, poses: Poses, sample: int) -> Array:
 
 @clause(
     "EC57",
-    "gears and cams that the engine takes hold their ratio and their law",
-    "A pair that slips, or has another sign, is a mechanism of another motion.",
-    "Hold scene.gears by the relation that Gear.relation has, scene.cams by CamPair.lift at each "
-    "step; or set Engine.applies_gears, applies_cams to False.",
+    "gears keep their ratio and cams their law, if the engine takes them",
+    "A pair that slips, or has another sign, makes another motion.",
+    "Keep scene.gears by Gear.relation and scene.cams by CamPair.lift at each step; or set "
+    "Engine.applies_gears, applies_cams to False.",
     of_scenes=False,
 )
 def _pairs(subject: Subject) -> Iterator[str]:
     takes_gears, takes_cams = subject.engine.applies_gears, subject.engine.applies_cams
     names = ("gear-train", "planetary") * takes_gears + ("cam-roller", "cam-rocker") * takes_cams
     if not names:
-        raise NotTriedError("applies_gears and applies_cams say that it takes none")
+        raise NotTriedError("applies_gears and applies_cams are False: it takes none")
     for name in names:
         worst, fault = _worst_place(subject.in_scene(load_scene(name)), STEPS[1])
         if worst is None:
@@ -271,9 +271,9 @@ CHANGES: Mapping[str, Callable[[Scene], Scene]] = {
 
 @clause(
     "EC56",
-    "errors of place stay near `floor`, where that is more than rounding in double precision",
-    "Below the floor nothing is seen: neither a fault nor that one engine is better.",
-    "Set Engine.floor to the error that is left at small steps, as a pure number.",
+    "errors of place stay near `floor`, if that is above rounding in double precision",
+    "Errors below the floor show neither a fault nor which of two engines is better.",
+    "Set Engine.floor to the error that remains at small steps, as a pure number.",
     of_scenes=False,
 )
 def _floor(subject: Subject) -> Iterator[str]:
@@ -289,9 +289,9 @@ def _floor(subject: Subject) -> Iterator[str]:
 
 @clause(
     "EC61",
-    "a scene that is turned, moved, mirrored or scaled errs as much",
-    "A sign or a number that suits one scene alone is seen on another, or not at all.",
-    "Look for signs of angles, lines that are taken as level, and tolerances in metres.",
+    "a turned, moved, mirrored or scaled scene has the same errors",
+    "A sign or a number that suits one scene alone fails on another.",
+    "Look for signs of angles, lines assumed level, and tolerances in metres.",
 )
 def _elsewhere(subject: Subject) -> Iterator[str]:
     plain = pure_errors(subject)

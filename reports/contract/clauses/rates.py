@@ -55,7 +55,7 @@ class _Rate:
 @clause(
     "EC41",
     "velocities belong to the instant that the facts state, and to the places",
-    "Half a step of an angle's acceleration is more than most errors of velocity.",
+    "A velocity changes in half a step by more than most of its errors.",
     "Set Facts.velocity_shift (in steps) and Poses.lag_s (velocity_shift * dt_s): -0.5 where "
     "velocities are stepped before places, 0.5 where after them, 0 where both are of one "
     "instant.",
@@ -73,8 +73,8 @@ def _velocities(subject: Subject) -> Iterator[str]:
 @clause(
     "EC42",
     "accelerations are reported as declared, and belong to the instant that the facts state",
-    "A missing acceleration is not zero, and that of a step ago is not the present one.",
-    "Give NaN for all where there are none, with reports_accelerations=False; else set "
+    "A missing acceleration is not zero, and the one before a step is not the present one.",
+    "Give NaN for all if there are none, with reports_accelerations=False; else set "
     "Facts.acceleration_shift.",
 )
 def _accelerations(subject: Subject) -> Iterator[str]:
@@ -132,12 +132,12 @@ def _faults(rates: list[_Rate], said: float, dt_s: float, what: str, where: str)
             worst = max(late, key=lambda body: abs(late[body] - said))
             if not abs(late[worst] - said) <= LATE:
                 yield (
-                    f"the {what} of {worst} is that of {late[worst]:+.2f} steps, "
-                    f"and {where} says {said:+.2f}"
+                    f"the {what} of {worst} belongs {late[worst]:+.2f} steps from its sample, "
+                    f"and {where} is {said:+.2f}"
                 )
                 return
         off = {rate.body: rate.off(said * dt_s) for rate in same}
         worst = max(off, key=lambda body: off[body])
         if not off[worst] <= OFF:
-            yield f"the {what} of {worst} is not that of its places: off by {off[worst]:.2g}"
+            yield f"the {what} of {worst} does not fit its places: error {off[worst]:.2g}"
             return

@@ -41,7 +41,7 @@ PULL = 0.5
 @clause(
     "EC81",
     "with forces the motion is the same, to the last bit",
-    "Errors of places are of runs without forces, and have to be those of runs with them.",
+    "Errors of places come from runs without forces, and have to hold for runs with them.",
     "Let record_forces step as record does, and read the forces beside it.",
 )
 def _same_motion(subject: Subject) -> Iterator[str]:
@@ -72,10 +72,10 @@ def _same_when_free(subject: Subject) -> Iterator[str]:
 
 @clause(
     "EC82",
-    "every pin and slider has its forces, as declared, and those of a pin add up to nothing",
-    "A missing or doubled force is taken for 0, or for that of another joint.",
-    "Give Forces.pins as joined_at(scene) names them, each force that of the pin on the body, "
-    "in the ground's frame; NaN for those that Engine.unreported names, and at the start where "
+    "every pin and slider has its forces, as declared, and those of a pin add up to zero",
+    "A missing or doubled force looks like 0, or like that of another joint.",
+    "Give Forces.pins by the names of joined_at(scene), each as the force of the pin on the "
+    "body, in the ground's frame; NaN for those in Engine.unreported, and at the start if "
     "forces_of is steps.",
 )
 def _declared(subject: Subject) -> Iterator[str]:
@@ -102,10 +102,10 @@ def _declared(subject: Subject) -> Iterator[str]:
     for name, there in given.items():
         if name in unreported:
             if there.any():
-                yield f"the {name} has numbers, and is unreported"
+                yield f"the {name} has numbers, but is in unreported"
         elif not there[first:].all() and not (forces.undetermined and not there.any()):
             missing = first + int(np.argmin(there[first:]))
-            yield f"the {name} is not finite at sample {missing}, and not unreported"
+            yield f"the {name} is not finite at sample {missing}, and not in unreported"
         elif there[:first].any():
             yield f"forces_of is steps, and the {name} is reported before the first of them"
     closed = max(CLOSED, rounding_of(subject.engine.precision))
@@ -147,10 +147,11 @@ def largest(forces: Forces) -> float:
 @clause(
     "EC83",
     "forces, inertia and gravity hold each body in equilibrium",
-    "A force with a wrong sign, frame or body is as large as a true one.",
-    "Turn forces into the ground's frame, and give that of the pin ON the body; normal along "
-    "the line turned by +90 deg and moment about the slider's point, both of the guide on what "
-    "slides; torque of the drive on the driver, without what turns a flywheel.",
+    "A force with a wrong sign, frame or body is as large as a correct one.",
+    "Turn forces into the ground's frame, and give that of the pin ON the body. For a slider "
+    "give the normal along the line turned by +90 deg and the moment about its point, both of "
+    "the guide on the sliding body. The torque is that of the drive on the driver, without the "
+    "share of a flywheel.",
 )
 def _equilibrium(subject: Subject) -> Iterator[str]:
     scene = pulled(subject.scene)
@@ -165,10 +166,10 @@ def _equilibrium(subject: Subject) -> Iterator[str]:
         force, moment = held.left_over(forces)
         off = float(np.abs(force).max()) / size
         if off > OFF:
-            yield f"{body}: {off:.2g} of the largest force ({size:.3g} N) is left over"
+            yield f"{body}: {off:.2g} of the largest force ({size:.3g} N) is unbalanced"
         off = float(np.abs(moment).max()) / (size * scene.longest_m)
         if off > OFF:
-            yield f"{body}: a moment of {off:.2g} of the largest force times a length is left over"
+            yield f"{body}: a moment of {off:.2g} of the largest force times a length is unbalanced"
 
 
 def pulled(scene: Scene) -> Scene:
@@ -248,10 +249,10 @@ def _matter(scene: Scene, body: str) -> tuple[float, float]:
 
 @clause(
     "EC84",
-    "forces belong to the instants that they state",
+    "forces belong to the instants stated with them",
     "Half a step is most of the error of a force.",
-    "Set Forces.time_s to when they act: an impulse over a step to its middle or, where "
-    "velocities are stepped with new places, its end.",
+    "Set Forces.time_s to the instants at which they act: an impulse over a step acts in its "
+    "middle or, if velocities are stepped with new places, at its end.",
 )
 def _instants(subject: Subject) -> Iterator[str]:
     scene = pulled(subject.scene)
@@ -259,7 +260,7 @@ def _instants(subject: Subject) -> Iterator[str]:
     true = kinetostatics.forces(scene, forces.time_s, bound=False)
     late = late_by(dict(named(forces)), dict(named(true)), subject.dt_s(STEPS))
     if late and abs(late[worst := max(late, key=lambda name: abs(late[name]))]) > LATE:
-        yield f"the {worst} is that of {late[worst]:+.2f} steps after the time that it has"
+        yield f"the {worst} acts {late[worst]:+.2f} steps after its stated time"
 
 
 def late_by(own: Mapping[str, Array], true: Mapping[str, Array], dt_s: float) -> dict[str, float]:

@@ -19,9 +19,9 @@ TURNS = 2.2
 
 @clause(
     "EC31",
-    "step, record and read come to the same state",
+    "step, record and read reach the same state",
     "Errors come from record and times from step: both have to be of the same motion.",
-    "Let record call what step calls, and read give the state as the last sample has it.",
+    "Let record call the function that step calls, and read return the state of the last sample.",
 )
 def _step_and_record(subject: Subject) -> Iterator[str]:
     for profile in subject.engine.profiles:
@@ -32,7 +32,7 @@ def _step_and_record(subject: Subject) -> Iterator[str]:
             yield f"profile {profile}: after 60 steps step and record differ by {off:.2g}"
         last = stretch(log.poses, slice(-1, None))
         if (off := apart(last, recorded.read())) > subject.rounding:
-            yield f"profile {profile}: the last sample and what read gives differ by {off:.2g}"
+            yield f"profile {profile}: the last sample and the state of read differ by {off:.2g}"
 
 
 @clause(
@@ -51,7 +51,9 @@ def _every_nth(subject: Subject) -> Iterator[str]:
             yield f"record(40, {every}) has samples at {_few(times)}, not {_few(wanted)} s"
             return
         if log.steps_done != 40 or log.diverged:
-            yield f"record(40, {every}) says {log.steps_done} steps done, diverged {log.diverged}"
+            yield (
+                f"record(40, {every}) reports {log.steps_done} steps done, diverged {log.diverged}"
+            )
         if not log.wall_s > 0.0:
             yield f"record(40, {every}) took {log.wall_s} s"
     if (off := apart(thin.poses, stretch(full.poses, slice(None, None, 8)))) > subject.rounding:
@@ -64,9 +66,9 @@ def _few(times: np.ndarray) -> str:
 
 @clause(
     "EC33",
-    "two stretches are one",
-    "Long runs are recorded in stretches.",
-    "Keep all state in the session: the number of steps done, and what a solver starts with.",
+    "two recordings in a row equal one",
+    "Long runs are recorded in parts.",
+    "Keep all state in the session: the number of steps done, and the start values of solvers.",
 )
 def _stretches(subject: Subject) -> Iterator[str]:
     for profile in subject.engine.profiles:
@@ -98,13 +100,13 @@ def _kept(subject: Subject) -> Iterator[str]:
     session.read()
     for what, poses, was in (("record", log, before[0]), ("read", now, before[1])):
         if not np.array_equal(numbers(poses), was, equal_nan=True):
-            yield f"what {what} gave changes while the session goes on"
+            yield f"the result of {what} changes while the session continues"
 
 
 @clause(
     "EC35",
     "two sessions side by side do not disturb each other",
-    "Runs at a step, its half and its quarter, and their times, are of sessions of their own.",
+    "Runs at a step, its half and its quarter, and their timing, use sessions of their own.",
     "Keep nothing in the module or the class that a step changes.",
     of_scenes=False,
 )
@@ -116,7 +118,7 @@ def _side_by_side(subject: Subject) -> Iterator[str]:
     second = a.record(15, 1).poses
     for part, cut in ((first, slice(0, 16)), (second, slice(15, 31))):
         if (off := apart(stretch(alone, cut), part)) > subject.rounding:
-            yield f"with another session at work beside it, it differs by {off:.2g}"
+            yield f"with another session beside it, it differs by {off:.2g}"
             return
 
 
@@ -130,13 +132,13 @@ def _twice(subject: Subject) -> Iterator[str]:
     for profile in subject.engine.profiles:
         one, other = (subject.opened(profile).record(100, 1).poses for _ in range(2))
         if not np.array_equal(numbers(one), numbers(other), equal_nan=True):
-            yield f"profile {profile}: 100 steps twice differ by {apart(one, other):.2g}"
+            yield f"profile {profile}: two runs of 100 steps differ by {apart(one, other):.2g}"
 
 
 @clause(
     "EC37",
-    "angles go on over whole turns",
-    "An angle that is wrapped jumps by 2 pi, and stands a turn behind.",
+    "angles continue over whole turns",
+    "A wrapped angle jumps by 2 pi, and is a turn behind.",
     "Report the angle as it is integrated, or add the turns.",
 )
 def _turns(subject: Subject) -> Iterator[str]:
@@ -146,7 +148,7 @@ def _turns(subject: Subject) -> Iterator[str]:
     turned = scene.driver.law.at(log.time_s)[0]
     off = float(np.abs(log.bodies[scene.driver.link].theta - turned).max())
     if not off < 1.0:
-        yield f"the crank is off by {off:.3g} rad over {TURNS} turns: whole turns are to be counted"
+        yield f"the crank is off by {off:.3g} rad over {TURNS} turns; count whole turns"
     for name, body in log.bodies.items():
         jump = float(np.abs(np.diff(body.theta)).max())
         if not jump < 1.0:
@@ -157,7 +159,7 @@ def _turns(subject: Subject) -> Iterator[str]:
     "EC38",
     "a session writes nothing to the terminal, nor into the working folder",
     "Ninety thousand warnings hide the one line that counts.",
-    "Silence the engine, and hand its warnings on in Log.warnings.",
+    "Silence the engine, and pass its warnings on in Log.warnings.",
     of_scenes=False,
 )
 def _quiet(subject: Subject) -> Iterator[str]:

@@ -60,7 +60,7 @@ def _other_scene(subject: Subject, profile: str) -> str:
     "EC22",
     "a session may start at any time of the driver's law",
     "A run that goes on from another, or from a later state, is driven by the time of its state.",
-    "Count time from state.time_s, in Poses.time_s and in what drives the crank.",
+    "Count time from state.time_s, in Poses.time_s and in the drive of the crank.",
 )
 def _at_any_time(subject: Subject) -> Iterator[str]:
     if is_other(subject):
@@ -103,7 +103,7 @@ def _every_scene(subject: Subject) -> Iterator[str]:
                 session = subject.in_scene(scene).opened(drive=drive)
             except NotTriedError as refused:
                 if not str(refused).strip():
-                    yield f"{at}: refused without a word"
+                    yield f"{at}: refused without a reason"
                 continue
             except Exception as error:  # any error of an engine counts
                 yield f"{at}: open raised {failure(error)}, in place of EngineError"

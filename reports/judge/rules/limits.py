@@ -57,11 +57,11 @@ class StartWithin:
     id = "CC116"
     title = "start"
     explanation = (
-        "An engine may need some samples to settle its pins; its rates may jump meanwhile by half "
-        "a step's acceleration, and no further. An engine that solves its joints in each step may "
-        "be off in acceleration by the change within a step."
+        "An engine may need some samples to settle its pins; its rates may jump meanwhile by "
+        "half a step's acceleration, not more. If it solves its joints in each step, its "
+        "accelerations may be wrong by their change within a step."
     )
-    cure = "Start the engine with velocities of the instant of its own, or shorten the step."
+    cure = "Start the engine with velocities of its own instant, or shorten the step."
 
     def check(self, evidence: Evidence) -> Finding | None:
         errors = evidence.errors

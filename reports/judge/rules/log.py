@@ -27,12 +27,12 @@ class ValuesFinite:
     id = "CC109"
     title = "finite values"
     explanation = (
-        "A NaN or an infinity in a log is a failure, even at one sample, even at the end; so is a "
+        "A NaN or an infinity in a log is a failure, even at one sample or at the end; so is a "
         "link, point, slider or pin of the scene that is missing from the log."
     )
     cure = (
-        "Shorten the step; look at the engine's warnings for the first bad step; if a body is "
-        "missing, look at the readings of the adapter."
+        "Shorten the step; find the first bad step in the engine's warnings; if a body is "
+        "missing, check the readings of the adapter."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -57,7 +57,7 @@ class LogComplete:
         "A run with status ok has logged every commanded sample, stamped with its whole number of "
         "steps; a sample that was not logged was not judged."
     )
-    cure = "Look at how the adapter logs; the time stamps are start + k dt, not a summed clock."
+    cure = "Check how the adapter logs: time stamps are start + k dt, not a summed clock."
 
     def check(self, evidence: Evidence) -> Finding | None:
         if evidence.status != "ok":
@@ -72,10 +72,13 @@ class AsAsked:
     id = "CC117"
     title = "as asked"
     explanation = (
-        "The numbers are those of the requested engine, settings, drive, step and samples, and a "
-        "finer run is a run of its own: otherwise the verdict is that of another cell."
+        "The numbers belong to the requested engine, settings, drive, step and samples, and a "
+        "finer run is a separate run: otherwise the verdict is that of another cell."
     )
-    cure = "Look at the program that runs the cells: a stored, renamed or thinned run is no answer."
+    cure = (
+        "Check the program that runs the cells: it must not return a stored, renamed or thinned "
+        "run."
+    )
 
     def check(self, evidence: Evidence) -> Finding | None:
         if evidence.unasked is None:
@@ -91,8 +94,7 @@ class Required:
     id = "CC119"
     title = "required"
     explanation = (
-        "A quantity that the log lacks is not judged, and no failure; a required one has to be in "
-        "it."
+        "A quantity that the log lacks is not judged, and is a failure only if it is required."
     )
     cure = "Log the named quantity or body, or leave it out of --require."
 
@@ -117,8 +119,8 @@ class PinsBalance:
         "Otherwise one of the forces is not the pin's."
     )
     cure = (
-        "Look at which bodies the adapter adds up; the force of one body on the other is the "
-        "opposite of that on itself."
+        "Check which bodies the adapter adds up: the force on one body is opposite to that on "
+        "the other."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -137,9 +139,9 @@ class NothingContradicts:
     id = "CC126"
     title = "forces as the engine has them"
     explanation = (
-        "The forces of an engine that reports sizes alone follow from the momentum of its bodies, "
-        "and are compared with those sizes: so its solver is judged, and not the arithmetic beside "
-        "it."
+        "If an engine reports only sizes of forces, the forces are computed from the momentum "
+        "of its bodies, and compared with these sizes: so its solver is judged, and not this "
+        "computation."
     )
     cure = (
         "A load outside the balance acts on the bodies, or friction in a joint at rest may have "

@@ -22,13 +22,14 @@ class TwoComputations:
     id = "CC111"
     title = "two computations"
     explanation = (
-        "Two independent computations never agree over a whole run: an engine that integrates has "
-        "an error of its step, one that solves its joints rounds its rates in another way. A body "
-        "that agrees better shows that the reference was compared with itself."
+        "Two independent computations never agree exactly over a whole run: an engine that "
+        "integrates has the error of its step, one that solves its joints rounds its rates "
+        "differently. A body that agrees better shows that the reference was compared with "
+        "itself."
     )
     cure = (
-        "Look at the source of the adapter's numbers; it must read the engine. One that solves its "
-        "joints in each step declares placing solved."
+        "Check the source of the adapter's numbers: it must read the engine. An engine that "
+        "solves its joints in each step declares placing solved."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -48,14 +49,14 @@ class TwoComputations:
             text = "every position equals the reference to the last bit"
             return Finding(self.id, "fail", text, 0.0, 0.0)
         if not found:
-            text = "engine and reference differ as two computations do"
+            text = "engine and reference differ like two computations"
             return Finding(self.id, "pass", text, max(row.pure for row in rows))
         first = found[0]
         bodies = ", ".join(dict.fromkeys(f"{row.body_kind} {row.body}" for row in found))
         why = (
             f"integration has an error of step^{highest_order(errors, order)}"
             if placing == "integrated"
-            else "separately computed rates round in another way"
+            else "separately computed rates round differently"
         )
         text = (
             f"{bodies}: {first.quantity} is off by {measure(first)} at most"
@@ -92,7 +93,10 @@ class ReferenceCertain:
             return Finding(
                 self.id, "pass", f"reference within {worst:.1e} of the limits", worst, SHARE
             )
-        text = f"reference not certain: {name} is known to {worst * limit:.2g}, limit {limit:.2g}"
+        text = (
+            f"reference not certain: {name} has the uncertainty {worst * limit:.2g}, limit "
+            f"{limit:.2g}"
+        )
         return Finding(self.id, "fail", text, worst, SHARE)
 
 
@@ -195,7 +199,7 @@ def _the_same(errors: Errors) -> Iterator[Error]:
 
 
 UNSURE = 0.05
-"""Least doubt of the beam, over the largest deflection, for advice: next to a resonance."""
+"""Least uncertainty of the beam, over the largest deflection, for advice: next to a resonance."""
 
 
 class TruthEnds:
@@ -204,7 +208,7 @@ class TruthEnds:
     explanation = (
         "The error of the deflection has three parts: the engine against the exact chain of "
         "segments, that chain against the beam, and the uncertainty of the beam. If one of the "
-        "last two is the largest, no engine and no step gives more."
+        "last two is the largest, no engine and no step can reduce it."
     )
     cure = (
         "More segments (--segments), or --springs corrected; a shorter step does not help. If the "
@@ -224,11 +228,11 @@ class TruthEnds:
             f"beam {links.doubt:.1e}, error of the linear theory {links.linear:.1e}"
         )
         if own > max(links.chain, links.doubt):
-            return Finding(self.id, "pass", f"the engine is off: {parts}", own)
-        ends = f"the {links.pieces.split()[1]} end"
-        ends = ends if links.chain > links.doubt else "the reference ends"
+            return Finding(self.id, "pass", f"the engine has the largest part: {parts}", own)
+        ends = f"the {links.pieces.split()[1]} limit"
+        ends = ends if links.chain > links.doubt else "the reference limits"
         level: Level = "advice" if links.doubt > UNSURE else "pass"
-        return Finding(self.id, level, f"{ends} before the engine does: {parts}", own)
+        return Finding(self.id, level, f"{ends} the accuracy, not the engine: {parts}", own)
 
 
 def engine_share(errors: Errors, links: ElasticFacts) -> float:

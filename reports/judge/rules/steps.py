@@ -17,9 +17,9 @@ class ErrorShrinks:
     id = "CC110"
     title = "convergence"
     explanation = (
-        "An error that stays when the step is halved twice is no discretisation error: the model "
-        "converges to the wrong answer. In a gated cell an error that grows, or that is over the "
-        "limit of the finer step, fails, as does a finer run that breaks down."
+        "An error that remains when the step is halved twice is no discretisation error: the "
+        "model converges to the wrong answer. A gated cell fails if the error grows or exceeds "
+        "the limit of the finer step, or if a finer run breaks down."
     )
     cure = (
         "A shorter step does not help; change the model of the engine: stiffness of joints, sweeps "
@@ -34,12 +34,12 @@ class ForcesShrink:
     id = "CC125"
     title = "convergence of forces"
     explanation = (
-        "As CC110, of the worst reaction, normal force, moment or torque: forces go with "
+        "As CC110, for the worst reaction, normal force, moment or torque: forces follow "
         "accelerations, of which a soft constraint leaves a share open at every step."
     )
     cure = (
-        "Look at which instant the forces belong to: half a step off is an error of first order. A "
-        "floor comes from soft constraints: stiffen them."
+        "Check the instant of the forces: half a step is an error of first order. A floor comes "
+        "from soft constraints: stiffen them."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -86,8 +86,8 @@ class ErrorSmooth:
         "two samples is rounding or noise in the log."
     )
     cure = (
-        "Log every digit; look for noise added to the numbers, and for joints whose solver stops "
-        "too soon (take profile tuned)."
+        "Log every digit; look for noise added to the numbers, and for joints whose solver "
+        "stops too soon (use profile tuned)."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
@@ -101,7 +101,9 @@ class ErrorSmooth:
             return None
         rough, text = found
         if rough <= MOST:
-            return Finding(self.id, "pass", "errors go on from sample to sample", rough, MOST)
+            return Finding(
+                self.id, "pass", "errors change smoothly from sample to sample", rough, MOST
+            )
         text = f"{text}, and jumps by {rough:.2g} times that from sample to sample"
         return Finding(self.id, "fail", text, rough, MOST)
 

@@ -36,13 +36,16 @@ class CamRequest(Layout):
     """Arguments of `cam`, as given."""
 
     task: Annotated[
-        str | None, argument("TASK", "A shipped task, or a task file (.toml); none lists them.")
+        str | None,
+        argument("TASK", "A shipped task, or a task file (.toml); default: a list."),
     ] = None
     output: Annotated[
         Path | None, option("Folder of profile, drawings and JSON.", "-o --output DIR")
     ] = None
-    points: Annotated[int, option("Points of the profile's files.", min=36, max=100_000)] = 3600
-    json: Annotated[bool, "As JSON, not as tables."] = False
+    points: Annotated[int, option("Points in the files of the profile.", min=36, max=100_000)] = (
+        3600
+    )
+    json: Annotated[bool, "Print JSON, not tables."] = False
     paper: PaperSize = "A4"
 
     @laid_out
@@ -210,7 +213,7 @@ def continuity(law: CamLaw) -> str:
     """Return the continuity of a law in words."""
     if law.continuous == 3:
         return "lift, velocity, acceleration and jerk are continuous"
-    return f"{('lift', *RATES)[law.continuous + 1]} jumps, all before it is continuous"
+    return f"{('lift', *RATES)[law.continuous + 1]} jumps; lower orders are continuous"
 
 
 def _write(folder: Path, task: CamTask, found: ExaminedCam, request: CamRequest, text: str) -> None:

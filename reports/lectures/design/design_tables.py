@@ -33,10 +33,10 @@ def remarks(one: Examined) -> list[str]:
 def counted(solutions: Solutions, listed: int) -> str:
     """The numbers of solutions examined, sound and listed, in words."""
     many, sound = len(solutions.examined), len(solutions.sound)
-    told = f"{count(solutions.looked, 'mechanism')} looked at, {many} examined"
+    told = f"{count(solutions.looked, 'mechanism')} tried, {many} examined"
     told += f", {sound} without a defect"
     if solutions.refused:
-        told += f"; {len(solutions.refused)} are none ({solutions.refused[0]})"
+        told += f"; {len(solutions.refused)} refused ({solutions.refused[0]})"
     if solutions.no_proof:
         told += f"; {solutions.no_proof}"
     if solutions.without:
@@ -105,7 +105,7 @@ def proof_rows(proofs: Mapping[int, Sequence[Met]]) -> list[dict[str, object]]:
             own = [one for one in every if (one.engine, one.profile) == engine]
             worst = max(own, key=_share)
             unit = unit_of(worst.asked)
-            none = worst.reason or "did not come there"
+            none = worst.reason or "did not reach it"
             rows.append(
                 {
                     "within": all(one.within for one in own),
@@ -174,7 +174,7 @@ def sensitivity_table(
         sizes = (f"{value:.2e} {unit}" for value in cells)
         rows.append((str(number), in_words(asked), *sizes, by))
     heads = ("position", "what", "worst", "root sum sq.", "Monte Carlo", "allowed", "most by")
-    return grid(heads, rows, f"Solution 1, every dimension off by up to {tolerance_m:g} m")
+    return grid(heads, rows, f"Solution 1, errors of every dimension up to {tolerance_m:g} m")
 
 
 def clearance_in_words(found: Sensitivity, limits: Sequence[float], spread: Spread) -> str:

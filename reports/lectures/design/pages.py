@@ -65,7 +65,7 @@ def construction_page(proposed: Examined | design.Proposal) -> str:
 
 def _doubts(view: construction_view.ConstructionView) -> list[str]:
     doubt, defects = view.examined.proposal.doubt, view.examined.defects
-    return [doubt] * bool(doubt) + [f"It has a fault: {listed(defects)}."] * bool(defects)
+    return [doubt] * bool(doubt) + [f"It has a defect: {listed(defects)}."] * bool(defects)
 
 
 def _embedded(view: construction_view.ConstructionView) -> dict[str, object]:

@@ -53,13 +53,13 @@ SAMPLES = 1000
 class SynthRequest:
     """Arguments of `synth`, as given."""
 
-    kind: Annotated[str | None, argument("KIND", "What kind of task; none lists them.")] = None
+    kind: Annotated[str | None, argument("KIND", "Kind of task; default: a list of kinds.")] = None
     task: Annotated[str | None, argument("TASK", "A shipped task, or a task file (.toml).")] = None
     output: Annotated[
         Path | None, option("Folder of scenes, tables, figures.", "-o --output DIR")
     ] = None
     best: Annotated[
-        int, option("So many of the solutions are listed and written.", min=1, max=1000)
+        int, option("Number of solutions that are listed and written.", min=1, max=1000)
     ] = 5
     prove: Annotated[bool, "Run each in every engine, through the requested positions."] = False
     engines: Engines = ()
@@ -72,7 +72,7 @@ class SynthRequest:
     vary_m: Annotated[
         float | None,
         option(
-            "Effect of dimensions off by up to so much, and of clearances.",
+            "Effect of errors of dimensions up to so much, and of clearances.",
             "--vary METRES",
             min=1e-9,
             max=1e6,

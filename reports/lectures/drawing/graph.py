@@ -32,12 +32,12 @@ class GraphRequest:
     scene: SceneName
     of: Annotated[str, option("A link, a slider, or a coordinate: C.x.", "NAME")]
     divisions: Annotated[
-        str, option("Parts of the period; of several, the errors.", "N[,N...]")
+        str, option("Parts of the period; for several numbers: their errors.", "N[,N...]")
     ] = "24"
     by: Annotated[str, "chords, tangents, or integration (of the acceleration)."] = "chords"
     over: Annotated[str, "time, or angle of the driver."] = "time"
     log: Annotated[
-        Path | None, option("A log of an engine, drawn the same way beside it.", "FILE")
+        Path | None, option("A log of an engine, drawn beside it in the same way.", "FILE")
     ] = None
     map: LogMap = None
     duration_s: Duration = None

@@ -22,7 +22,7 @@ from reports.requests.options import argument, output_option
 HEAD = 10
 """Width of the heads of paragraphs, in letters."""
 NameOrFile = Annotated[
-    str | None, argument("NAME", "A shipped name, or a file; all are listed if none.")
+    str | None, argument("NAME", "A shipped name, or a file; default: a list of all.")
 ]
 
 
@@ -83,8 +83,8 @@ def _paragraphs(mobility: SchemeMobility) -> list[tuple[str, str]]:
     ]
     if mobility.margin_is_small:
         nearly = (
-            f"the equations depend on each other but for {mobility.near.margin:.1e}: with numbers "
-            "to more digits the scheme may have a motion more"
+            f"the equations are dependent to {mobility.near.margin:.1e}: with more digits the "
+            "scheme may have one more motion"
         )
         told.append(("nearly", nearly))
     return told
@@ -106,8 +106,7 @@ def _mobility(mobility: SchemeMobility) -> str:
         )
     if mobility.yielding:
         words += (
-            f"; {count(mobility.yielding, 'motion')} of first order more, which gives back: the "
-            "scheme shakes"
+            f"; {count(mobility.yielding, 'motion')} more, of first order alone: the scheme shakes"
         )
     if mobility.near.others:
         others = ", ".join(map(str, mobility.near.others))

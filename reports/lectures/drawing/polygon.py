@@ -135,7 +135,7 @@ class PolygonRequest:
         float | None, option("The driver's speed, in place of its law's.", "RAD_S")
     ] = None
     k: Annotated[
-        float | None, "Vectors of the crank so many times as long as it is drawn, p b = k AB."
+        float | None, "Length of the crank's vectors over that of the drawn crank, p b = k AB."
     ] = None
     log: Annotated[
         Path | None, option("A log of the scene, yours or an engine's: drawn beside.", "LOG")
@@ -148,7 +148,7 @@ class PolygonRequest:
             "Draw the sheet: .svg in layers, .pdf, .gif step by step, or .html over a turn."
         ),
     ] = None
-    turn: Annotated[bool, "With -o FILE.gif: over a turn, in place of step by step."] = False
+    turn: Annotated[bool, "With -o FILE.gif: a turn, in place of the steps of drawing."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show the vectors, or draw the sheet. Raises CrankcheckError for a faulty request."""
@@ -194,7 +194,7 @@ def _contradiction(request: PolygonRequest, ending: str) -> str:
     """Two options that contradict each other, and the reason; empty where there are none."""
     at_time, has_log = request.at_s is not None, request.log is not None
     if at_time and request.at_deg is not None:
-        return "--at-s with --at-deg: each says the instant"
+        return "--at-s with --at-deg: each sets the instant"
     if at_time and request.omega is not None:
         return "--at-s with --omega: at a time the driver has a speed"
     if has_log and request.omega is not None:
@@ -202,7 +202,7 @@ def _contradiction(request: PolygonRequest, ending: str) -> str:
     if has_log and (request.turn or ending == PAGE):
         return f"--log with a turn, --turn or -o FILE{PAGE}: a log is drawn at one instant"
     if request.map is not None and not has_log:
-        return "--map without --log: it says what the columns of a log mean"
+        return "--map without --log: it gives the meaning of a log's columns"
     return ""
 
 

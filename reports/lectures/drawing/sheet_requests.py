@@ -43,7 +43,7 @@ ENDINGS = (".svg", ".pdf")
 
 
 SheetFile = Annotated[Path | None, output_option("Draw it: .svg in layers, or .pdf.")]
-LogMap = Annotated[Path | None, option("TOML that says what its columns mean.", "FILE")]
+LogMap = Annotated[Path | None, option("TOML with the meaning of its columns.", "FILE")]
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,7 @@ class CentresRequest:
 
     scene: SceneName
     at_deg: Annotated[float, option("The driver's angle.", "DEG")] = 60.0
-    link: Annotated[
-        str, option("Its poles, circles of curvature and centrodes as well.", "NAME")
-    ] = ""
+    link: Annotated[str, option("Also its poles, circles of curvature and centrodes.", "NAME")] = ""
     paper: PaperSize = "A4"
     output: SheetFile = None
 
@@ -152,11 +150,11 @@ MOST_TYPED = 8
 class ChainsRequest:
     """Arguments of `chains`, as given."""
 
-    links: Annotated[int, option("Links, the ground with them.", "N")] = 6
+    links: Annotated[int, option("Number of links, with the ground.", "N")] = 6
     mobility: Annotated[int, option("Their mobility.", "W")] = 1
-    inversions: Annotated[bool, "The mechanisms: each link as the ground."] = False
+    inversions: Annotated[bool, "Also the mechanisms, with each link as the ground."] = False
     sliders: Annotated[
-        int | None, option("Type synthesis: up to so many of the pins are sliders.", "K")
+        int | None, option("Type synthesis: up to so many sliders in place of pins.", "K")
     ] = None
     paper: PaperSize = "A4"
     output: Annotated[Path | None, output_option("Draw them: .svg in layers, or .pdf.")] = None
@@ -186,7 +184,7 @@ class ChainsRequest:
 def _asked(request: ChainsRequest) -> Iterator[tuple[str, Chain]]:
     """The chains of pins with their names; with ``sliders`` their types instead."""
     if request.sliders is not None and request.sliders < 0:
-        raise CrankcheckError(f"--sliders {request.sliders}: take 0 or more")
+        raise CrankcheckError(f"--sliders {request.sliders}: give 0 or more")
     if request.sliders is not None and request.links > MOST_TYPED:
         raise CrankcheckError(
             f"--sliders with {request.links} links: types are listed of chains of up to "

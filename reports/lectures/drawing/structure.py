@@ -107,9 +107,9 @@ class StructureRequest:
 
     scene: SceneName
     at_deg: Annotated[
-        float | None, option("The driver's angle; default: where the scene starts.", "DEG")
+        float | None, option("The driver's angle; default: the scene's start.", "DEG")
     ] = None
-    at_m: Annotated[float | None, option("The place of a slider that drives.", "M")] = None
+    at_m: Annotated[float | None, option("The displacement of a driving slider.", "M")] = None
     paper: PaperSize = "A4"
     output: Annotated[
         Path | None, output_option("Draw all assemblies: .svg in layers, or .pdf.")

@@ -104,12 +104,12 @@ def notes(cycle: SteadyCycle) -> list[str]:
         size = readable(abs(cycle.drive_n_m), 6)
         closing = f"; here it {does} {size} N m" if cycle.drive_n_m else ""
         told.append(
-            "The driver's law is taken as the mean speed, kept by a constant torque of the drive "
+            "The driver's law gives the mean speed, kept by a constant torque of the drive "
             f"that closes the balance of work{closing}."
         )
     elif cycle.machine.is_rated:
         told.append(
-            "Free motion: the loads alone settle the speed. A change of the energy falls to "
+            "Free motion: the loads alone settle the speed. A change of the energy decays to "
             f"{readable(cycle.settling)} of itself in a cycle."
         )
     else:

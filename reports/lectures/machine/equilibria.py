@@ -21,7 +21,7 @@ class EquilibriaRequest:
     """Arguments of `equilibria`, as given."""
 
     scene: SceneName
-    json: Annotated[bool, "As JSON, not as a table."] = False
+    json: Annotated[bool, "Print JSON, not a table."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show the positions of rest. Raises CrankcheckError as `equilibria`."""
@@ -46,10 +46,8 @@ class EquilibriaRequest:
             f"circuit {number + 1} is left out: loads are not given everywhere in it"
             for number in rests.beyond
         ]
-        notes += ["none: what acts drives it on everywhere"] * (not rows)
-        notes += ["friction is left out: it holds beside these positions too"] * bool(
-            scene.friction
-        )
+        notes += ["none: the loads drive it everywhere"] * (not rows)
+        notes += ["friction is left out: it also holds positions near these"] * bool(scene.friction)
         if self.json:
             document = {"scene": scene.name, "equilibria": rows, "notes": notes}
             say_whole(console, json.dumps(document, indent=1))

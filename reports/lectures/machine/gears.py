@@ -51,7 +51,7 @@ class GearsRequest:
     planets: Annotated[
         int | None, option("Check that so many equal planets can be assembled.", min=1)
     ] = None
-    json: Annotated[bool, "As JSON, not as tables."] = False
+    json: Annotated[bool, "Print JSON, not tables."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show the train. Raises CrankcheckError for a faulty request or train."""

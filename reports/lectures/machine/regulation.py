@@ -224,7 +224,7 @@ class FlywheelRequest(Layout):
     motion there with ``free``."""
 
     scene: SceneName
-    delta: Annotated[float, "Coefficient of fluctuation that is wanted, such as 0.02."]
+    delta: Annotated[float, "Requested coefficient of fluctuation, such as 0.02."]
     output: Output = None
     figures: Figures = None
     written: Annotated[
@@ -260,7 +260,7 @@ def _check(request: FlywheelRequest) -> None:
     """Refuse files that can not be written, and ``free`` without a file. Raises CrankcheckError."""
     _check_outputs(request)
     if request.free and request.written is None:
-        raise CrankcheckError("--free: it says how the scene is written; give --write FILE.toml")
+        raise CrankcheckError("--free: it changes the written scene; give --write FILE.toml")
     check_file(request.written, "--write", (".toml",))
     files = {"-o": request.output, "--write": request.written}
     Outputs(files).check([find_scene(request.scene)])

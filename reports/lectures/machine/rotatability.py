@@ -44,12 +44,12 @@ class RotatabilityRequest:
     position: Annotated[
         Sequence[str],
         option(
-            "A position, such as 90 or 90:+-, signs by dyad in solving order; repeatable: "
-            "whether the driver leads through all in this order.",
+            "A position, such as 90 or 90:+- (signs by dyad in solving order); may be repeated: "
+            "check that the driver leads through all in this order.",
             "DEG[:SIGNS]",
         ),
     ] = ()
-    json: Annotated[bool, "As JSON, not as tables."] = False
+    json: Annotated[bool, "Print JSON, not tables."] = False
 
     def run(self, console: Console, progress: Console) -> int:
         """Show the answer; return the exit code. Raises CrankcheckError for a faulty request."""
@@ -85,7 +85,7 @@ def _position(circuits: Circuits, text: str) -> Position:
     if not math.isfinite(angle) or not fits:
         dyads = ", ".join(circuits.signed.dyads) or "none"
         raise CrankcheckError(
-            f"--position {shown(text)}: wants degrees, and a sign + or - for each dyad after a "
+            f"--position {shown(text)}: give degrees, and a sign + or - for each dyad after a "
             f"colon ({len(signs)}: {dyads}), such as 90:{'+' * len(signs)}"
         )
     given = tuple(1 if sign == "+" else -1 for sign in written)
@@ -170,7 +170,7 @@ def _of_own_branch(scene: Scene, why: str) -> dict[str, object]:
 
 
 def _show_own_branch(console: Console, document: Mapping[str, Any]) -> None:
-    say(console, f"{document['scene']}: the branch that it is on alone")
+    say(console, f"{document['scene']}: only its own branch")
     show_rows(console, document["rotations"], TABLES["rotations"].split())
     say(console, "")
     for end in document["ends"]:
@@ -217,7 +217,7 @@ TABLES = {
 
 
 def _show(console: Console, document: Mapping[str, Any]) -> None:
-    kind = "no four-bar or slider-crank driven at its crank, so of no Grashof type"
+    kind = "not a four-bar or slider-crank driven at its crank, so without a Grashof type"
     if document["type"] is not None:
         kind = f"{document['type']}, margin {document['margin_m']:.6g} m"
     say(console, f"{document['scene']}: {kind}")

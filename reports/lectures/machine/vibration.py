@@ -131,7 +131,7 @@ class VibrationRequest(Layout):
         across = self.modes or (ONE if one else MANY)
         by = Modes(across, min(across, Modes().along))
         if self.factors is not None and self.map_link is None:
-            raise CrankcheckError("--factors: they are of the inertia of a link; give --map LINK")
+            raise CrankcheckError("--factors: factors of the inertia of a link; give --map LINK")
         if self.map_link is not None:
             link = self.map_link
             _answer(self, OVER_INERTIA, lambda: _over_inertia(self, link, scene, by), console)
@@ -165,8 +165,8 @@ def _asked_speeds(scene: Scene, text: str | None) -> Array:
     slowest = lowest_rad_s(scene) / MOST_RATIO
     if low < slowest:
         raise CrankcheckError(
-            f"--speeds: found {low:g} rad/s, which the lowest natural frequency of a link is over "
-            f"{MOST_RATIO:g} times of: links do not vibrate there; start at {slowest:.2g} or more"
+            f"--speeds: found {low:g} rad/s; the lowest natural frequency of a link is over "
+            f"{MOST_RATIO:g} times that: links do not vibrate; start at {slowest:.2g} or more"
         )
     return np.linspace(low, high, count)
 

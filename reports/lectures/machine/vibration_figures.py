@@ -66,7 +66,7 @@ def _add_scale(figure: Figure, axes: Axes, field: QuadMesh, words: str) -> None:
 
 SHOWN = "#b8860b"
 UNSTABLE = "#c0392b"
-LINEAR = "linear in the deflection, about the rigid motion, with the stiffness that pull gives"
+LINEAR = "linear in the deflection, about the rigid motion, with the stiffening by tension"
 
 
 def draw_over_speed(over: OverSpeeds) -> Figure:

@@ -118,11 +118,11 @@ def notes(vibration: SteadyVibration) -> list[str]:
     dampings = [own.damping_s for own in vibration.scene.elastic.values()]
     if 0.0 in dampings:
         told.append(
-            "Without damping_s the motion from any other start keeps ringing beside this one."
+            "Without damping_s the motion from any other start keeps vibrating around this one."
         )
     told.append(
-        "Order: how often a mode vibrates in a turn; at a whole one the driver resonates with it. "
-        "Linear: about the rigid motion, with the stiffness that pull gives; not stiffened: "
+        "Order: number of vibrations of a mode in a turn; at a whole number the driver excites "
+        "it. Linear: about the rigid motion, with the stiffening by tension; not stiffened: "
         "without, as in the thesis."
     )
     return told
@@ -134,8 +134,8 @@ def stability_text(vibration: SteadyVibration) -> str:
     damped = any(own.damping_s for own in vibration.scene.elastic.values())
     if not vibration.stability.is_stable:
         return (
-            f"UNSTABLE: a turn multiplies deviations by {largest:.4g}: the turning feeds the "
-            "vibration, and the mechanism does not stay on this motion. Take another speed, a "
+            f"UNSTABLE: a turn multiplies deviations by {largest:.4g}: the rotation feeds the "
+            "vibration, and the mechanism does not stay on this motion. Use another speed, a "
             "lighter link that the elastic one moves, or more damping_s."
         )
     if damped and largest == 0.0:  # below the smallest number
@@ -153,9 +153,9 @@ def resonance_text(found: FrequencySensitivity) -> str:
             f"No resonance is near: 1 % of stiffness changes the deflection by {found.size:.3g} %."
         )
     return (
-        f"NEAR A RESONANCE with {found.link} at order {found.order}: 1 % of stiffness changes the "
-        f"deflection by {found.size:.3g} %, so that it is known no better than the stiffness times "
-        "that."
+        f"NEAR A RESONANCE with {found.link} at order {found.order}: 1 % of stiffness changes "
+        f"the deflection by {found.size:.3g} %, so its uncertainty is that of the stiffness "
+        "times this."
     )
 
 
@@ -198,11 +198,11 @@ def speeds_notes(over: OverSpeeds) -> list[str]:
         f"Unstable from {each.low_rad_s:.6g} to {each.high_rad_s:.6g} rad/s: a turn multiplies "
         f"deviations by up to {readable(each.multiplier)}."
         for each in unstable_speeds(over)
-    ] or ["At none of these speeds deviations grow."]
+    ] or ["Deviations grow at none of these speeds."]
     told.append(
-        f"Critical speeds: the driver excites a mode at a whole order, up to {HIGHEST}; within the "
-        "band the motion depends on the stiffness too much to be computed. By equations linear in "
-        "the deflection, with the stiffness that pull gives."
+        f"Critical speeds: the driver excites a mode at a whole order, up to {HIGHEST}; within "
+        "the band the motion depends on the stiffness too much to be computed. By equations "
+        "linear in the deflection, with the stiffening by tension."
     )
     return told
 

@@ -50,7 +50,7 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
                 (sign(name), kind(name), name, meanings.get(name, "unknown on this page"), number)
                 for name, number in outcomes_seen(matrix).items()
             ],
-            "shaded": errors[0] if len(errors) == 1 else "details of each case",
+            "shaded": errors[0] if len(errors) == 1 else "see the details of each case",
             "shades": [f"below {error_text(SHADES[0], 1)}", *map(_from, SHADES)],
             "failures": _failures(matrix, shown),
             "left_out": count(len(matrix.pictures) - len(drawn), "moving picture"),

@@ -136,12 +136,12 @@ def _shipped(row: VerdictRow) -> str:
     texts = []
     if row.floors:
         texts.append(
-            f"on {len(row.floors)} of {count(row.lines, 'scene')} the error stops falling, at "
+            f"on {len(row.floors)} of {count(row.lines, 'scene')} the error stops shrinking, at "
             f"{spread([error_text(f) for f in sorted(row.floors)])}, however small the step"
         )
     if row.orders:
         rest = "on the others it" if texts else "its error"
-        texts.append(f"{rest} falls with order {row.order} of the step")
+        texts.append(f"{rest} shrinks with order {row.order} of the step")
     return text + (f": {'; '.join(texts)}." if texts else ".")
 
 

@@ -64,7 +64,7 @@ MASSES = (
     ),
     _heavy(
         name="massless-coupler",
-        title="Coupler with less and less mass, in the end none",
+        title="Coupler with less and less mass, finally none",
         source=SOURCE,
         trial=lambda share: _link("coupler", share),
         parameter="mass of the coupler, over that of a slender rod",
@@ -88,7 +88,7 @@ def _turned(angle_deg: float) -> Trial:
 _same = partial(
     Case,
     source=SOURCE,
-    truth="closed form; a mechanism does not know where it stands, nor how large it is",
+    truth="closed form; place and size of a mechanism do not matter",
     expected="the same error as a pure number",
 )
 _size = partial(
@@ -120,7 +120,7 @@ SCALES = (
 
 
 SETTLED_TURNS = 1.0
-"""Turns after which errors count: an engine that mends its start has done so by then."""
+"""Turns after which errors count: an engine that corrects its start has done so by then."""
 
 
 def _started(scene: Scene, start: State, open_m: float = 0.0) -> Trial:
@@ -160,25 +160,25 @@ _start = partial(Case, source=SOURCE)
 STARTS = (
     _start(
         name="open-joint",
-        title="Started with a joint open",
+        title="Start with an open joint",
         truth="closed form of the assembled linkage, from the second turn on",
-        expected="closes the joint, and goes on as if it had been closed",
+        expected="closes the joint, and continues as if it had been closed",
         parameter="gap at the start over the crank's length",
         values=(1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5),
         trial=_open_joint,
     ),
     _start(
         name="wrong-velocity",
-        title="Started with a velocity that does not fit",
+        title="Start with a wrong velocity of the rocker",
         truth="closed form, from the second turn on",
-        expected="takes the wrong velocity away in the first steps",
-        parameter="velocity of the rocker that is too much, over the crank's",
+        expected="removes the wrong velocity in the first steps",
+        parameter="excess velocity of the rocker, over the crank's",
         values=(1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0),
         trial=_other_velocity,
     ),
     _start(
         name="wrong-branch",
-        title="Started in the other assembly",
+        title="Start in the other assembly",
         truth="closed form of the scene's branch; no engine can know which one is meant",
         expected="branch-changed: the comparison says so",
         parameter="assembly",

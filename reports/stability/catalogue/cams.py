@@ -40,13 +40,13 @@ CAMS = (
     _case(
         name="cam-on",
         title="Follower below the speed at which it leaves its cam",
-        expected="stays on up to 1; where it leaves is the engine's own speed of lift-off",
+        expected="stays on up to 1; it leaves at the engine's own speed of lift-off",
         values=(0.5, 0.7, 0.9, 0.95, 0.98),
     ),
     _case(
         name="cam-off",
         title="Follower above the speed at which it leaves its cam",
-        expected="leaves down to 1: a joint that stays closed pulls, as no contact does",
+        expected="leaves down to 1: a joint that stays closed pulls, which no contact does",
         values=(1.5, 1.25, 1.1, 1.05, 1.02),
         good=("silently-open",),
     ),

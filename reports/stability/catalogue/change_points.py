@@ -13,7 +13,7 @@ GRASHOF = "Grashof's rule; the parallelogram and the kite are its limiting cases
 TRIAD_CRANK_M = 0.06387509801
 """Longest crank of triad-platform that turns fully: at 239 deg two assemblies meet then."""
 through = partial(Case, parameter="steps in a turn", values=(5760.0, 1440.0, 360.0, 90.0))
-"""Case that goes on through its change points: its trials come from `four_turns`."""
+"""Case that continues through its change points: its trials come from `four_turns`."""
 
 
 def four_turns(scene: Scene, steps: float) -> Trial:
@@ -39,7 +39,7 @@ CHANGE_POINTS = (
         name="triad-excess",
         title="Class III group, two assemblies nearly meeting",
         source="triad-platform with a crank up to the longest that turns fully",
-        truth="one assembly of six at most, followed with certainty past the one that comes near",
+        truth="one assembly of at most six, followed with certainty past the one that comes near",
         expected="stays in its assembly, though the plate turns back sharply",
         parameter="longest crank that turns, less the crank",
         unit="m",
@@ -57,7 +57,7 @@ CHANGE_POINTS = (
         title="Parallelogram through its flat positions",
         source=GRASHOF,
         truth="the coupler keeps its direction, by smooth continuation",
-        expected="goes on smoothly: inertia carries it through",
+        expected="continues smoothly: inertia carries it through",
         trial=partial(
             four_turns, hard.fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=GRASHOF)
         ),
@@ -67,7 +67,7 @@ CHANGE_POINTS = (
         title="Kite through its flat positions",
         source=GRASHOF,
         truth="A and C stay mirror images in the line BD, by smooth continuation",
-        expected="goes on smoothly: inertia carries it through",
+        expected="continues smoothly: inertia carries it through",
         trial=partial(four_turns, hard.fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=GRASHOF)),
     ),
 )
@@ -94,7 +94,7 @@ SLIDER_CRANKS = (
         title="Isosceles slider-crank, stroke 4R",
         source="L = R: the change point of the slider-crank",
         truth="the pin runs through the crank's pivot, x = 2 R cos(theta), by smooth continuation",
-        expected="goes on smoothly through the pivot",
+        expected="continues smoothly through the pivot",
         trial=partial(four_turns, hard.slider_crank("isosceles", 0.1, 0.1, source="L = R")),
     ),
 )
@@ -137,7 +137,7 @@ LEVERS = (
         title="AB = AC: the block runs through the lever's pivot",
         source=CULISSE,
         truth="the lever turns at half the crank's speed, by smooth continuation",
-        expected="goes on smoothly through the pivot",
+        expected="continues smoothly through the pivot",
         trial=partial(
             four_turns,
             hard.slotted_lever("lever-through-pivot", CRANK_M, CRANK_M, source="AB = AC"),

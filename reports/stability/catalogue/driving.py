@@ -56,7 +56,7 @@ DRIVING = (
         name="speed-same-dt",
         title=f"Faster and faster at the same dt of {SAME_DT_S:g} s",
         truth="closed form; errors grow with the turn in a step, squared",
-        expected="errors as those of fewer steps in a turn",
+        expected="the same errors as with fewer steps in a turn",
         trial=_same_dt,
     ),
     _faster(
@@ -84,7 +84,7 @@ DRIVING = (
         name="speed-jump",
         title="The speed jumps",
         truth="closed form; the angle of the crank has a corner",
-        expected="follows: a prescribed crank takes any push",
+        expected="follows: a prescribed crank withstands any impulse",
         parameter="speed after over speed before",
         values=(1.1, 2.0, 5.0, 10.0, 30.0, 100.0),
         trial=lambda ratio: _changed(SPEED_RAD_S, ratio * SPEED_RAD_S, 0.0),
@@ -101,7 +101,7 @@ DURATION = tuple(
         name=name,
         title=f"Turn after turn, {scene}",
         source=scene,
-        truth="closed form; every turn is as the first",
+        truth="closed form; every turn is like the first",
         expected="no growth with the turns",
         parameter="turns",
         values=(10.0, 100.0, 1e3, 1e4),
@@ -151,7 +151,7 @@ STEPPING = (
         title="Few iterations of the solver",
         source=SHAPER,
         truth="closed form of a six-bar with a heavy ram",
-        expected="says so, or stays closed",
+        expected="reports it, or stays closed",
         parameter="iterations",
         values=(100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0),
         trial=lambda number: Trial(load_scene(SHAPER), settings={"iterations": int(number)}),
@@ -162,7 +162,7 @@ STEPPING = (
         title="Arithmetic in single precision",
         source=SOURCE,
         truth="closed form",
-        expected="holds the class, where the engine has it; neither of these two has",
+        expected="holds the class, if the engine has it; neither of these two has",
         parameter="precision",
         unit="bit",
         values=(32.0,),
@@ -271,7 +271,7 @@ def _coupler(off_deg: float) -> Trial:
 
 
 _near = partial(
-    Case, expected="turns round with its driver, and does not run on into the other assembly"
+    Case, expected="turns back with its driver, and does not pass into the other assembly"
 )
 _off = partial(
     _near, parameter="distance from the limit", unit="deg", values=(10.0, 1.0, 0.1, 0.01)
@@ -281,7 +281,7 @@ NEAR_LIMITS = (
         name="triad-near-limit",
         title="Class III group, its crank ever nearer to a limit position",
         source="triad-platform with a crank of 0.1 m, which cannot turn fully",
-        truth="one assembly of six at most, followed with certainty; its last place with the crank",
+        truth="one assembly of at most six, followed with certainty; its last place with the crank",
         trial=_triad,
     ),
     _near(

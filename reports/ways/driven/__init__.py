@@ -41,9 +41,9 @@ class DrivenWay(Way):
     units = DRIVEN.compared_with(" at the commanded time")
     over_g: Sequence[str] = ()
     results = ResultKind(
-        error="An error is the largest of a whole run against the closed form: of a link angle in "
-        "radians, of a slider's displacement or a point's place in lengths of the longest link, "
-        "whichever is worst.",
+        error="An error is the largest of a whole run, compared with the closed form: the worst "
+        "of all link angles, in radians, and of all places of sliders and points, over the "
+        "longest link.",
         stands=0,
         leads=1,
         axis="largest error: angle [rad], place / L [-]",

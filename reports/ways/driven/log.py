@@ -31,7 +31,7 @@ class DrivenLog:
     """Logs of driven scenes with rigid links."""
 
     truth_name = "closed form"
-    no_cause = "none that is known explains {}"
+    no_cause = "no known cause explains {}"
     driver_angle = "drive"
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:
@@ -62,10 +62,10 @@ SHOWN = 3
 """Most columns whose errors are described."""
 HARMONICS = 3
 LEAST_TURNS, LEAST_ROWS = 1.5, 24
-"""Harmonics of an error that comes back every turn, and the least turns and rows to find them."""
+"""Harmonics of an error that repeats every turn, and the least turns and rows to find them."""
 TOLD = 0.1
 """Least part of an error, by the mean square, that is described."""
-WORDS = ("stays the same", "grows or falls linearly", "comes back every turn", "has another shape")
+WORDS = ("stays the same", "grows or falls linearly", "repeats every turn", "has another shape")
 SMALL, MOST = 0.1, 0.7
 """Limits of the part of an error that remains at the logged angle: little of it, most of it."""
 

@@ -39,9 +39,9 @@ class Bending(DrivenWay):
         kept="deflection within a target of the beam's",
         head="target\n/ D",
         notes=(
-            "Each elastic link is so many rigid segments, with a spring of rate EI n / l in every "
-            "pin between them. Whatever the speed, the step times their highest frequency stays "
-            "below 1.5.",
+            "Each elastic link is a chain of n rigid segments, with a spring of rate EI n / l "
+            "in every pin between them. At any speed the step times their highest frequency "
+            "stays below 1.5.",
         ),
     )
 

@@ -52,9 +52,9 @@ def known_log(log: OwnLog, step_s: float, target: Mapping[str, float]) -> tuple[
     rows = truth.known(log.time_s)
     if rows < LEAST_ROWS:
         raise CrankcheckError(
-            f"{log.source}: at t = {log.time_s[rows]:.4g} s the reference of {scene.name} is too "
-            "uncertain to judge by: a small change of its start has grown too much by then; log "
-            "the motion from its start on, or give a wider --target"
+            f"{log.source}: at t = {log.time_s[rows]:.4g} s the reference of {scene.name} is "
+            "too uncertain for a judgement: a small change of its start has grown too much by "
+            "then; log the motion from its start on, or give a wider --target"
         )
     return log.first(rows), truth
 
@@ -142,7 +142,7 @@ def told_apart(errors: Errors) -> Iterator[str]:
     yield (
         f"at the same time {phase.body} is off by {_size(phase)} at most, with a sensitivity of "
         f"{short(errors.of_motion.sensitivity)}; at its own angle {geometry.body} is off by "
-        f"{_size(geometry)}: {what}; free motion is not searched for causes"
+        f"{_size(geometry)}: {what}; causes are not searched in free motion"
     )
 
 
@@ -154,7 +154,7 @@ class FreeLog:
     """Logs of free motion with rigid links."""
 
     truth_name = "free motion"
-    no_cause = "of {}: see the notes; free motion is not searched for causes"
+    no_cause = "of {}: see the notes; causes are not searched in free motion"
     driver_angle = "phase"
 
     def truth(self, log: OwnLog, request: LogRequest) -> tuple[OwnLog, Truth, DriveFit | None]:

@@ -224,8 +224,8 @@ def _followers(
             told = [f"{file.body_name(model, b)} ({_joints_of(model, [b])})" for b in bodies]
             raise file.ModelError(
                 f"{one.name}: a <{one.kind}> equality couples coordinates of {few(told, SHOWN)} "
-                f"{'twice with' if beside else 'in'} the loop, of which no closed form is known; "
-                "take it out, and close loops with <connect>"
+                f"{'twice with' if beside else 'in'} the loop, of which no closed form is "
+                "known; remove it, and close loops with <connect>"
             )
         seen.update(*beside)
         yield one, beside[0][0]
@@ -268,7 +268,7 @@ def _not_drivable(model: Any, index: int, ties: Ties) -> str:
     told = f"it turns against body {file.body_name(model, parent)}, and not against the ground"
     movers = [b for b in above if not all(is_hinge(model, j) for j in _joints(model, [b]))]
     if movers and len(block) > 2:
-        told += f", which its loop meets too; hold that body: take out {_joints_of(model, movers)}"
+        told += f", which its loop meets too; fix that body: remove {_joints_of(model, movers)}"
     return told
 
 

@@ -93,9 +93,9 @@ class OwnModelSession(SteppedModel):
         off = np.max(np.abs((turned - turned[0]) - (wanted - wanted[0])))
         if off > LOST_RAD:
             raise EngineError(
-                f"the driven joint is off by {off:.3g} rad, for all its flywheel, so that the line "
-                "says nothing of the loops; take off what loads that joint (damping, friction), or "
-                "please report it where nothing does"
+                f"the driven joint is off by {off:.3g} rad in spite of its flywheel, so the "
+                "line shows nothing of the loops; remove the loads of that joint (damping, "
+                "friction), or report it if there are none"
             )
         return log
 

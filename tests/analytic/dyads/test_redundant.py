@@ -132,7 +132,7 @@ ONLY = "lever fits in place only: A2 and B2 part at"
     [
         (parallelogram(2, lever_m=0.101), [15.0, 40.0], 2.0,
          r"parallelogram: redundant link lever is 0\.101 m long from A2 to B2, which stand 0\.1 m "
-         r"apart, 0\.001 m off, with crank at [-\d.]+ deg; .* mend its length .*, or remove it"),
+         r"apart, 0\.001 m off, with crank at [-\d.]+ deg; .* correct its length .*, or remove it"),
         (rigid_at(90.0), [80.0, 90.0, 130.0, 95.0], 2.0,
          "redundant link lever .*crank at 130 deg"),
         (rigid_at(31.0), [31.0], 2.0, rf"{ONLY} [\d.]+ m/s with crank at 31 deg"),

@@ -187,7 +187,7 @@ def test_what_oscillates_has_a_periodic_motion() -> None:
         (load_scene("fourbar-lecture-1"), r"no link of it is elastic"),
         (replace(fourbar(), ground={"A": (0.0, 0.0), "D": (1.35, 0.0)}), "through a change point"),
         (replace(load_scene("fourbar-by-coupler"), elastic=fourbar().elastic),
-         "takes a driver that is a link pinned to the ground.*pin B of crank and coupler"),
+         "needs a driver that is a link pinned to the ground.*pin B of crank and coupler"),
     ],
 )  # fmt: skip
 def test_what_is_not_followed_is_named(scene: Scene, says: str) -> None:

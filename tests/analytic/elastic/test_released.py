@@ -249,8 +249,8 @@ LONG = FourierSum(0.0, (0.1,), (0.0,), 1.5 * TURN_S)
 @pytest.mark.parametrize(
     ("load", "words"),
     [
-        (Load("kick", "rocker", None, Pulse(0.1, 0.3)), "does not go evenly on from turn to turn"),
-        (Load("kick", "rocker", None, LONG), "does not go evenly on from turn to turn"),
+        (Load("kick", "rocker", None, Pulse(0.1, 0.3)), "does not continue smoothly"),
+        (Load("kick", "rocker", None, LONG), "does not continue smoothly"),
         (Load("controller-speed", "rocker", None, FourierSum(0.1, (), (), 1.0)),
          "controller-speed has the name"),
     ],

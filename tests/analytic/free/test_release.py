@@ -261,5 +261,5 @@ def test_what_leads_to_their_start_goes_on_through_it(pendulum: FreeMotion) -> N
 
 def test_several_freedoms_without_a_start_are_told_both_ways() -> None:
     unnamed = DOUBLE_PENDULUM.split("[start]")[0]
-    with pytest.raises(StructureError, match=r"mobility W = .* lower start is not named"):
+    with pytest.raises(StructureError, match=r"mobility W = .* the start of .*lower is not named"):
         release(parsed(unnamed.replace("speed_rad_s = 1.0", "")), 0.1)

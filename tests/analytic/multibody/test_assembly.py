@@ -97,14 +97,14 @@ REFUSED = {
     ),
     "rigid": (
         ROTOR.replace("[0.0, 0.0] }", "[0.0, 0.0], B = [0.5, 0.0] }"),
-        "nothing of it can move",
+        "nothing can move",
     ),
     "far": (
         THESIS.replace("39.0", "50.0"),
         r"coupler is 50 deg.* open there by 10\.9 deg: with dr",
     ),
     "open": (THESIS.replace("[1.0, 0.0]", "[3.0, 0.0]"), r"cannot be assembled.* open by 1\.5\d m"),
-    "unnamed": (THESIS.split("[start]")[0], "where coupler, rocker start is not named"),
+    "unnamed": (THESIS.split("[start]")[0], "the start of coupler, rocker is not named"),
     "speeds": (
         THESIS + "rates_rad_s = { rocker = 1.0 }\n",
         "contradict each other.* is 1, and 0.8",

@@ -118,11 +118,11 @@ REFUSED = {
     "redundant beside loose": (build(FOURBAR | {"rocker": "DCE", "strut": "BC", "tail": "EF"}),
         r"= 1, but 2 where redundant links \(strut\) are not counted.*Pin a loose link"),
     "both pins in common": (build({"crank": "AB", "coupler": "DC", "rocker": "DC"}),
-        "coupler and rocker both hang on pin D, and turn"),
+        "coupler and rocker are both pinned at D alone, and turn"),
     "three sliders": (build({"crank": "AB", "p": "CI", "q": "EF"}, "A", THREE_SLIDERS),
-        "do not hang on the driver"),
+        "are not joined to the driver"),
     "a branch of no assemblies": (replace(build(FOURBAR), branch={"B": 1}),
-        r"branch\.B chooses between no two assemblies; it has C"),
+        r"branch\.B separates no assemblies; it has C"),
     "a branch of a scene without assemblies": (replace(load_scene("tangent"), branch={"P": 1}),
         r"branch\.P .* this scene has none"),
 }  # fmt: skip
@@ -156,7 +156,7 @@ def test_what_hangs_on_a_driver_in_too_many_ways_is_not_searched_for_a_group() -
     with pytest.raises(StructureError) as raised:
         analyse(chain_of_platforms(60))
     said = str(raised.value)
-    assert " and 352 more do not hang on the driver" in said
+    assert " and 352 more are not joined to the driver" in said
     assert len(said) < 300
 
 

@@ -130,9 +130,8 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
                                                                      "krank; use one of crank, "
                                                                      "rod"),
         "spring in one link": ('["G", "S"]', '["A", "B"]', "springs.line.points: A and B are "
-                                                           "points of crank, which lie as far "
-                                                           "apart as ever; name points of two "
-                                                           "bodies"),
+                                                           "points of crank, at a constant "
+                                                           "distance; name points of two bodies"),
         "spring from nowhere": ('["G", "S"]', '["Z", "S"]', "springs.line.points: no body has a "
                                                             "point Z"),
         "spring of nothing": ("rate_n_m = 50.0, free_m = 0.1", "free_m = 0.1", "springs.line: a "
@@ -145,11 +144,8 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
                                                                          "more"),
         "spring of two kinds": ('pin = "B"', 'pin = "B", slider = "C"', "springs.turning: give its "
                                                                         "place"),
-        "turning spring in newtons": ("rate_n_m_rad = 0.3", "rate_n_m = 0.3", "springs.turning: "
-                                                                              "rate_n_m does not "
-                                                                              "go with a pin; give "
-                                                                              "rate_n_m_rad and "
-                                                                              "damping_n_m_s"),
+        "turning spring in newtons": ("rate_n_m_rad = 0.3", "rate_n_m = 0.3", "springs.turning: rate_n_m does not belong to a pin; give rate_n_m_rad and "
+            "damping_n_m_s"),
         "spring between a body and itself": ("free_deg = -20.0", 'bodies = ["rod", "rod"]', "springs.turning.bodies: "
                                                                                             "found "
                                                                                             "rod "
@@ -194,19 +190,8 @@ FAULTS: dict[str, tuple[str, dict[str, tuple[str, str, str]]]] = {
                                                                               "have to increase"),
         "fewer steps than values": ("[0.0, 0.25, 0.5]", "[0.0, 0.5]", "loads.switch: found 2 "
                                                                       "places and 3 values"),
-        "friction of the reactions": ("torque_n_m = 0.004", "mu = 0.1, radius_m = 0.01", "friction.A: "
-                                                                                         "friction "
-                                                                                         "by mu "
-                                                                                         "follows "
-                                                                                         "from the "
-                                                                                         "reactions, "
-                                                                                         "and free "
-                                                                                         "motion "
-                                                                                         "is not "
-                                                                                         "worked "
-                                                                                         "out with "
-                                                                                         "it; give "
-                                                                                         "torque_n_m"),
+        "friction of the reactions": ("torque_n_m = 0.004", "mu = 0.1, radius_m = 0.01", "friction.A: friction by mu follows from the reactions, and free motion is not "
+            "computed with it; give torque_n_m"),
         "flywheel without a mass": ("flywheel_kg_m2", "mass_kg = 0.0, "
                                                       "flywheel_kg_m2", "links.crank: "
                                                                                        "flywheel_kg_m2 "
@@ -385,16 +370,16 @@ RAMP = ELASTIC.replace("speed_rad_s = 7.37", 'law = "from-rest"\nspeed_rad_s = 7
         ("[elastic.coupler]\nflexural_n_m2 = 1.0\nbends = false\n", "neither bends nor stretches"),
         ("[elastic.coupler]\nmodulus_pa = 7e10\nwidth_m = 0.03\n", "width_m goes with height_m"),
         (SECTION + "area_m2 = 1e-4\n", "two sections"),
-        (SECTION + "flexural_n_m2 = 1.0\n", "says flexural_n_m2 and axial_n too"),
+        (SECTION + "flexural_n_m2 = 1.0\n", "gives flexural_n_m2 and axial_n too"),
         ("[elastic.coupler]\nflexural_n_m2 = 1.0\ndensity_kg_m3 = 1.0\n", "goes with a section"),
         ("[elastic.coupler]\nflexural_n_m2 = -1.0\n", "flexural_n_m2"),
         (SECTION + "density_kg_m3 = 2700.0\ndamping_s = 1e9\n", "from 0.0258 on its first mode no "
                                                                 "longer swings"),
         ("[elastic.rod]\nflexural_n_m2 = 1.0\n", "no link of that name; use one of"),
         ("[elastic.crank]\nflexural_n_m2 = 1.0\n", "the driver has to be a rigid link"),
-        (SECTION.replace("0.003", "0.08"), "9.38 heights of its section long"),
-        (SECTION + '[friction.C]\ntorque_n_m = 0.1\n', "do not go together"),
-        (SECTION + '[loads.push]\nlink = "coupler"\ntorque_n_m = 0.1\n', "bends it by where"),
+        (SECTION.replace("0.003", "0.08"), "its length is 9.38 heights of its section"),
+        (SECTION + '[friction.C]\ntorque_n_m = 0.1\n', "can not be combined"),
+        (SECTION + '[loads.push]\nlink = "coupler"\ntorque_n_m = 0.1\n', "bends it by its place"),
         ('[start]\nshape = "straight"\n', "no link of the scene is elastic"),
     )),
     (ELASTIC.replace(COUPLER, COUPLER + ", mass_kg = 1.0") + HEAVY, "its section and density_kg_m3 "

@@ -54,7 +54,7 @@ def test_a_law_of_another_kind_is_refused() -> None:
         offset_rad = 0.0
         at = turned = lambda self, _: self
 
-    with pytest.raises(CrankcheckError, match="law Own: a scene file has no words for it"):
+    with pytest.raises(CrankcheckError, match="law Own: a scene file can not state it"):
         scene_text(driven_by(Own()))
 
 
@@ -126,7 +126,7 @@ REFUSED = [
     *((numbered(branch), said) for branch, said in (
         ("plate = 7", "numbered from 1 to at most 6"),
         ("plate = 5", "has 2 assemblies; give a number from 1 to 2$"),
-        ("leg1 = 1", "no two assemblies; it has plate"),
+        ("leg1 = 1", "separates no assemblies; it has plate"),
     )),
     (
         TRIAD.replace("E = [0.25", "E = [0.01"),

@@ -131,7 +131,7 @@ def test_a_link_too_light_for_mujoco_or_that_hangs_on_nothing_is_named() -> None
     still = {"X": (0.0, 0.0), "Y": (0.0, 0.0)}
     rates = {key: {**getattr(state, key), **still} for key in ("velocity", "acceleration")}
     state = replace(state, position={**state.position, **loose.points}, **angles, **rates)
-    with pytest.raises(EngineError, match="loose hangs on nothing"):
+    with pytest.raises(EngineError, match="loose is pinned to nothing"):
         build(scene, state)
 
 

@@ -51,7 +51,7 @@ def test_free_scenes_ship_and_all_are_let_go_and_the_chain_is_the_one_that_is_ma
 
 def test_what_is_driven_has_no_start_and_what_has_no_mass_is_not_let_go() -> None:
     driven = FREE.replace('law = "free"', 'law = "constant"').replace("duration_s = 4.0\n", "")
-    with pytest.raises(SceneError, match='start: it goes with law = "free"; a driven mechanism'):
+    with pytest.raises(SceneError, match='start: only for law = "free"; a driven mechanism'):
         parse_scene(driven, "file")
     light = FREE.replace(", flywheel_kg_m2 = 0.01", "").replace("mass_kg = 0.5", "")
     light = light.replace("length_m = 0.1 }", "length_m = 0.1, mass_kg = 0.0 }")

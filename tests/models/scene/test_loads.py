@@ -90,7 +90,7 @@ def test_every_law_of_a_load_is_read_and_reads_back_as_itself_and_no_other_has_w
         at = steepest = rounding = carried = lambda *_: 0.0  # type: ignore[assignment]
 
     scene = load_scene("fourbar-lecture-1")
-    with pytest.raises(CrankcheckError, match="load x: a scene file has no words for a Own"):
+    with pytest.raises(CrankcheckError, match="load x: a scene file can not state a Own"):
         scene_text(replace(scene, loads={"x": Load("x", "crank", None, Own())}))
 
 

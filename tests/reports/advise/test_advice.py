@@ -142,7 +142,7 @@ def test_the_nearest_is_told_where_nothing_reaches_what_was_luck_and_what_has_no
     assert f"mujoco RK4 with 8, 1.8e-3 on {NAME}" in text
     assert "no run came to its end" in flat(printed(advice(FOUND[-1])))
     lucky = flat(printed(advice((replace(FOUND[-3][0], unsteady=(3, 4)), None))))
-    assert "mujoco RK4: within with 3, 4 sub-steps, and not with more" in lucky
+    assert "mujoco RK4: within with 3, 4 sub-steps, but not with more" in lucky
     every = advice(FOUND[1], (FOUND[2][0], None))  # a process lost while it was timed
     assert labels(every.offers) == labels(every.best) == "mujoco tuned; pymunk no bias"
     assert "within 0.001, 7.9e-4 at worst\n" in printed(every)

@@ -182,9 +182,9 @@ def test_least_sub_steps_do_for_a_turn_and_twice_the_most_run(frame_s: float, le
         ({"speed_rad_s": -math.inf}, "--speed -inf: "),
         ({"target": 1.0}, "--target 1: .* to under 1"),
         ({"turns": 0.5}, "--turns 0.5: give 1 turn"),
-        ({"frame_s": 1e4}, "--dt 10000: .* even in 4096 sub-steps; give one of 322 s at most"),
-        ({"turns": 1e4}, "--turns 10000: 376991 frames, 37.7 in .*: take --turns 2.65e.03, or"),
-        ({"frame_s": 1e-9}, "at most 100000 steps are run: ask for a longer frame"),
+        ({"frame_s": 1e4}, "--dt 10000: .* even in 4096 sub-steps; give at most 322 s"),
+        ({"turns": 1e4}, "--turns 10000: 376991 frames, 37.7 in .*: use --turns 2.65e.03, or"),
+        ({"frame_s": 1e-9}, "at most 100000 steps are run: give a longer frame"),
     ],
 )
 def test_what_can_not_be_asked_for_is_told(changes: dict[str, float], words: str) -> None:

@@ -65,9 +65,9 @@ def many(form: str, count: int) -> str:
 
 SPECIAL: dict[str, tuple[Callable[[Path], object], str]] = {
     "3 GB": (sparse, "3000000000 bytes; at most 200000 are read"),
-    "endless": (partial(os.symlink, "/dev/zero"), "a device, no plain file"),
-    "pipe": (os.mkfifo, "a pipe, no plain file"),
-    "socket": (bound, "a socket, no plain file"),
+    "endless": (partial(os.symlink, "/dev/zero"), "a device, not a plain file"),
+    "pipe": (os.mkfifo, "a pipe, not a plain file"),
+    "socket": (bound, "a socket, not a plain file"),
     "folder": (os.mkdir, "a folder; name a plain text file of at most 200000 bytes"),
     "link to nothing": (partial(os.symlink, "nothing"), "neither a shipped scene|not there"),
 }
@@ -102,7 +102,7 @@ YAML: dict[str, tuple[bytes, str]] = {
     "date that is none as a key": (b"2020-13-45: 1", "2020-13-45: unknown key; known: scenes"),
     "number as a key": (b"1: 1", "1: found 1; keys should be strings"),
     "billion laughs": (nested(10, 9), "line 5, column .*: more than 5000 values, those of an al"),
-    "itself": (b"scenes: &a [*a]", "line 1, column 13: an alias for what it stands in; name"),
+    "itself": (b"scenes: &a [*a]", "line 1, column 13: an alias of the part that holds it; refer"),
     "brackets": (b"a: " + b"[" * 90_000, "line 1, column 13: values nested more than 10 deep"),
     "5001 keys": (many("a#: 1\n", 5001).encode(), "more than 5000 val"),
     "tag": (b"turns: !!python/object:os.system x", "could not determine a constructor"),

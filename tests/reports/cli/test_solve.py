@@ -56,7 +56,7 @@ def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(tmp_path: Pat
     speed = math.sqrt(100.0 + 2 * 5.0 * math.pi / 2)
     assert f"crank 180.00000 3.1415927 {speed:.8g} 5.0000000" in flat(output)
     wrong = crank("solve", path, "--at-deg", "80")
-    refused(wrong, "never comes there; it comes to the same driver angle at 440 deg")
+    refused(wrong, "never gets there; it reaches the same driver angle at 440 deg")
 
 
 def test_without_a_whole_cycle_there_is_no_stroke(tmp_path: Path) -> None:
@@ -146,7 +146,7 @@ def test_where_it_may_jam_the_numbers_stay_without_a_bound(tmp_path: Path) -> No
     output = told("solve --at-deg 90 --forces", helped)
     assert abs(row(output, "piston block ground")[-2]) > 100.0
     said = flat(output)
-    assert "Two equilibria here, as the mechanism may jam: these forces, those of less" in said
+    assert "Two equilibria here, as the mechanism may jam: these forces are those of less" in said
     assert "It may jam with crank from 80.5961 to 99.4039 deg and from 260.596" in said
     assert "no useful work is done in it, so it has no efficiency." in said
 

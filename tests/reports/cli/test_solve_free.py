@@ -122,4 +122,4 @@ def test_what_is_let_go_keeps_its_energy(tmp_path: Path) -> None:
     assert 0.0 < np.max(np.abs(apart)) < 1e-2
     said = flat(told(PULSE.replace("0.1", "0.02"), "--steps", 2))
     assert "driver crank, released at rest at 90 deg, for 5 s" in said
-    assert "By the next finer description, deflections are off by about " in said
+    assert "Uncertainty, from the next finer description: deflections " in said

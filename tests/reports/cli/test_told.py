@@ -39,7 +39,7 @@ TOLD = {
     " slider C -3.7271082 -2.7891124 | C 0.35000000 0.74833148",
     f"solve {PISTON} --forces": "driving force 15.4 | slider C at",
     f"graph {PISTON} --of rod": "no. C m phi rad | 12 0.30000",
-    f"rotatability {PISTON}": f"{PISTON}: the branch that it is on alone | slider C ends at 0.2 m: "
+    f"rotatability {PISTON}": f"{PISTON}: only its own branch | slider C ends at 0.2 m: "
     "crank and rod in line",
     # Forces: m a of the block along its line is the rod's, and the guide takes the rest; locked
     # instants are told, and have no mean.
@@ -57,12 +57,12 @@ TOLD = {
     " | slider B, moment -0.00639277 N m 234 deg 0",
     # What is let go, or bends.
     "solve fourbar-swing --duration 0.5 --steps 4": "driver crank, released at rest at 0 deg, for "
-    "10 s; groups | 0.5 -194.2583 10.52205 170.5064 0.1350355 0.295723 0 | the angle of crank is "
-    "off by at most | at 0.5 s. Sensitivity 2.61: growth of a small change of the start",
+    "10 s; groups | 0.5 -194.2583 10.52205 170.5064 0.1350355 0.295723 0 | uncertainty of the "
+    "angle of crank at most | at 0.5 s. Sensitivity 2.61: growth of a small change of the start",
     "solve fourbar-elastic --steps-per-turn 4": "EI = 4.725 N m^2, from 77.3704 rad/s on (10.5"
     " times the speed | by 8 polynomials across each, with the shortening of bent links"
     " | 0.2131743 180 0.0005291017 | deflection of its middle 0.00105172 m 125 deg | Starts on the"
-    " periodic motion: it comes back after a period | deflections are off by about",
+    " periodic motion, with the period of the driver | finer description: deflections",
     "solve fourbar-double-rocker-swing --duration 0.5 --steps 2": "Limits in which driver turns"
     " back: -92.866 deg at 0.415855 s (C).",
     "solve fourbar-elastic-controlled --turns 0.004 --modes 1 --steps-per-turn 500":
@@ -80,7 +80,7 @@ TOLD = {
     " | at rest: every velocity is 0 | one point, as omega is 0",
     "polygon fourbar-chain --omega 1 --at-deg 0": "v_B0A0"
     " | not drawn: RRR (coupler0, rocker1): both directions"
-    " | not drawn: RRR (coupler1, rocker2): hangs on coupler0",
+    " | not drawn: RRR (coupler1, rocker2): depends on coupler0",
     "graph fourbar-lecture-1 --of rocker --divisions 8": "no. crank deg phi rad omega rad/s exact"
     " epsilon rad/s² exact | 0.5 112.50 4.9897"
     " | in 8 parts; omega off by up to 5.4 %, epsilon off by up to 11 %",
@@ -106,7 +106,7 @@ TOLD = {
     " | mobility W = 1 passive 1 constraint: link crank-3 may be left out",
     "mobility rssr": "mobility W = 2, 1 without idle ones | idle 1 freedom: coupler: turns about "
     "the line through B and C",
-    "mobility stretched-bars": "gives back: the scheme shakes",
+    "mobility stretched-bars": "of first order alone: the scheme shakes",
     # Verdicts: as shipped is shown and does not count, but for where it is named.
     ONCE: "profile tuned (gated) | profile as-shipped (shown, not gated) | OUT fourbar-lecture-1"
     " | WITHIN TOLERANCE: 1 cell (1 scene x 1 engine) | , mujoco 4.",

@@ -82,7 +82,7 @@ def test_a_full_disk_costs_the_file_alone(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_two_files_with_one_name_are_refused(tmp_path: Path) -> None:
     path = edited(tmp_path, "fourbar-crossed", ('"fourbar-crossed"', '"fourbar-lecture-1"'))
-    refused(crank(*ONE.split(), path), "a second scene called fourbar-lecture-1", "rename one")
+    refused(crank(*ONE.split(), path), "two different scenes have the name", "rename one")
 
 
 def test_a_fault_of_the_scene_is_told_before_anything_runs(tmp_path: Path) -> None:

@@ -127,7 +127,7 @@ def test_samples_in_dead_points_are_left_out_and_counted() -> None:
     assert all(row.finite for row in found.rows)
     samples = sum(row.samples for row in found.rows if row.quantity == "torque")
     assert samples == time_s.size - 3
-    assert any("3 samples of 361 in dead points left out" in note for note in found.notes)
+    assert any("left out 3 samples of 361, in dead points" in note for note in found.notes)
 
 
 def test_the_torque_of_a_parallelogram_at_constant_speed_is_held_to_an_arm() -> None:

@@ -34,7 +34,7 @@ def test_a_fault_breaks_its_clause(name: str) -> None:
 
 def test_accelerations_of_another_instant_are_seen() -> None:
     ruling = put_to(late_accelerations(engine("mujoco")), CLAUSES["EC42"], FOURBAR)
-    assert "is that of -1.00 steps, and acceleration_shift says +0.00" in ruling.breaches[0]
+    assert "-1.00 steps from its sample, and acceleration_shift is +0.00" in ruling.breaches[0]
 
 
 def test_single_precision_that_is_declared_breaks_nothing() -> None:
@@ -78,7 +78,7 @@ def test_what_is_broken_is_told_with_its_reason_and_its_cure() -> None:
     assert "ok  EC11  profiles as-shipped" in text
     assert "OUT EC41  velocities belong" in text
     assert "          sixbar-watt: it is off\n" in text
-    assert "          and 2 more\n          why: Half a step" in text
+    assert "          and 2 more\n          why: A velocity changes" in text
     assert "          cure: Set Facts.velocity_shift" in text
     assert "BREAKS THE CONTRACT: mine 1.0, 1 clause of 2: EC41" in text
 

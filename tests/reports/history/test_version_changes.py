@@ -90,8 +90,8 @@ def test_worse_is_told_before_better_as_shipped_before_tuned_and_places_for_rate
 
 def test_versions_that_agree_are_said_to_and_cells_that_come_within_tolerance_counted() -> None:
     for gap, words in (
-        (1.08e-3, "2 differs from 1 in no error by more than a tenth"),
-        (1.5e-3, "2 differs from 1 by 1.5 times at most in any error"),
+        (1.08e-3, "no error of 2 differs from that of 1 by more than a tenth"),
+        (1.5e-3, "errors of 2 differ from those of 1 by 1.5 times at most"),
     ):
         assert told([cell(pin_gap=1e-3)], [cell(pin_gap=gap)]) == [words]
     out = [cell(angle=1.0), cell("shaper", angle=1.0)]

@@ -166,10 +166,10 @@ def test_what_is_no_log_is_told(tmp_path: Path, text: str, words: str) -> None:
 @pytest.mark.parametrize(
     ("cell", "words"),
     [
-        ("1;5", "row 3, column 'a': found '1;5', no number"),
-        ('"1,000"', "row 3, column 'a': found '1,000', no number; write decimal points, or say"),
-        ("1'000.5", "row 3, column 'a': found .*no number; write numbers without marks"),
-        ("00:01", "row 3, column 'a': found '00:01', no number; write seconds"),
+        ("1;5", "row 3, column 'a': found '1;5', not a number"),
+        ('"1,000"', "row 3, column 'a': found '1,000', not a number; write decimal points, or set"),
+        ("1'000.5", "row 3, column 'a': found .*not a number; write numbers without marks"),
+        ("00:01", "row 3, column 'a': found '00:01', not a number; write seconds"),
         ("1.5D-3", "row 3, column 'a': found '1.5D-3', .*write e for"),
     ],
 )
@@ -191,8 +191,8 @@ def test_rows_beyond_the_most_are_refused(tmp_path: Path, monkeypatch: pytest.Mo
     [
         (pd.to_timedelta([0, 1], unit="s"), r"column 't': found durations .*give .* seconds"),
         (pd.to_datetime([0, 1], unit="s"), r"column 't': found dates .*give .* seconds"),
-        ([True, False], "column 't': found True, no number"),
-        ([1j, 2.0], "column 't': found 1j, no number"),
+        ([True, False], "column 't': found True, not a number"),
+        ([1j, 2.0], "column 't': found 1j, not a number"),
         ([1.5, None], "the frame, row 1, column 't': found nan"),
     ],
 )

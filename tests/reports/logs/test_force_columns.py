@@ -151,7 +151,7 @@ def test_lengths_and_friction_that_we_write_are_left_alone() -> None:
     ("scene", "column", "reason"),
     [
         ("slider-crank-offset", "B_ground_fx_n", "in B meet crank and rod, not ground"),
-        ("slotted-lever", "E_crank_fx_n", "E is no pin"),
+        ("slotted-lever", "E_crank_fx_n", "E is not a pin"),
         ("toggle-press", "C_fy_n", "in C meet coupler, upper and lower: name the body"),
     ],
 )

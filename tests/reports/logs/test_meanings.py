@@ -171,8 +171,8 @@ ALONE, VELOCITY, ACCELERATION = {"rocker": ROCKER.theta}, "velocity_time_s", "ac
 REFUSED: list[tuple[dict[str, object], dict[str, object], str]] = [
     ({"a": TIME_S}, {"column": "a"}, "add of, kind and unit"),
     ({"a": TIME_S}, {"column": "a", "of": "C", "kind": "angle"},
-     "'angle' is no kind of reading of point C; use x, y"),
-    ({}, {"column": "t", **ANGLE}, r"'t': it is the column of times; say .* \[time\]"),
+     "'angle' is not a kind of reading of point C; use x, y"),
+    ({}, {"column": "t", **ANGLE}, r"'t': it is the column of times; describe it, .* in \[time\]"),
     ({"t": TIME_S + 1.7e9, "rocker": ROCKER.theta}, {},
      r"turns of crank after the start; .* zero = 'first'"),
     ({"time_ms [s]": TIME_S, "rocker": ROCKER.theta}, {}, "ms and s"),
@@ -183,7 +183,7 @@ REFUSED: list[tuple[dict[str, object], dict[str, object], str]] = [
      "column 'C_x': found nan .300 such cells.; if it has another rate or clock than the rest, "
      "write a file for each"),
     ({"t": np.repeat(TIME_S[::2], 2), **ALONE}, {}, "stands still.* of two rates, write a file"),
-    ({**ALONE, "timestamp": TIME_S}, {}, r"or say time in the \[\[channel\]\] .* write a file for"),
+    ({**ALONE, "timestamp": TIME_S}, {}, r"or set time in the \[\[channel\]\] .* write a file for"),
     ({**ALONE, VELOCITY: TIME_S[::-1]}, {}, "row 1, .*velocity_time_s.: time goes back"),
     ({**ALONE, ACCELERATION: 0 * TIME_S}, {}, "row 1, .*acceleration_time_s.: time stands still"),
     ({**ALONE, VELOCITY: TIME_S * 1e30}, {}, "velocity_time_s.: t = .* turns of crank after"),
@@ -338,7 +338,7 @@ def test_a_clock_that_a_channel_names_is_read_and_one_without_a_name_is_asked_ab
         if name == "frame":
             assert not understood(read, SCENE).timed
             continue
-        with pytest.raises(CrankcheckError, match="'pulse' may be it; if not, ignore = true"):
+        with pytest.raises(CrankcheckError, match="'pulse' may be it; if not, set ignore = true"):
             understood(read, SCENE)
 
 

@@ -71,7 +71,7 @@ def test_a_named_link_is_refused_and_one_in_a_folder_replaced(target: str, tmp_p
     link = tmp_path / "out" / "link.csv"
     link.parent.mkdir()
     link.symlink_to(tmp_path / target)
-    refused(rf"--csv .*: a link, to .*{target}; name that", check_file, link, "--csv")
+    refused(rf"--csv .*: a link to .*{target}; name this", check_file, link, "--csv")
     check_folder(link.parent, "-o", [link.name])
     Outputs({}, link.parent, {link.name: ""}).check()
     write(link, "new")
@@ -98,7 +98,7 @@ def test_a_folder_may_be_a_link_but_not_to_nothing(tmp_path: Path) -> None:
     write(tmp_path / "to real" / "out.csv", "new")
     assert (tmp_path / "real" / "out.csv").read_text() == "new"
     for deeper in ("", "deeper"):
-        words = r"-o .*to nothing: a link, to .*nothing; name"
+        words = r"-o .*to nothing: a link to .*nothing; name"
         refused(words, check_folder, tmp_path / "to nothing" / deeper, "-o")
 
 
@@ -138,7 +138,7 @@ print("after")
 def test_a_folder_that_the_system_has_a_link_to_is_no_stream(name: str) -> None:
     if not Path(name).is_symlink():
         pytest.skip("no such link here")
-    refused(f"--csv {name}: a link, to .*; name that itself", check_file, Path(name), "--csv")
+    refused(f"--csv {name}: a link to .*; name this file itself", check_file, Path(name), "--csv")
 
 
 @pytest.mark.skipif(not os.access("/dev/shm", os.W_OK), reason="no such folder here")
@@ -148,7 +148,7 @@ def test_a_link_of_a_user_among_those_of_the_system_is_refused(tmp_path: Path) -
             link = Path(folder) / target.name
             link.symlink_to(target)
             target.touch()
-            refused(r"--csv .*: a link, to .*; name", check_file, link, "--csv")
+            refused(r"--csv .*: a link to .*; name", check_file, link, "--csv")
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ OPTIONS: dict[str, str] = {
     JUDGE: "--step.*--target|--target.*--step",
     **{f"{JUDGE} --step {number}": "--step" for number in ("0", "nan", "1e300")},
     f"{JUDGE} --target nan": "'nan' is not a number above 0",
-    f"{JUDGE} --target angel=1e-3": "'angel' is no quantity; .*angle",
+    f"{JUDGE} --target angel=1e-3": "'angel' is not a quantity; .*angle",
     f"{JUDGE} --target 1e-3 --require rockr": "--require 'rockr': neither a q.*rocker",
     f"{JUDGE} --target 1e-3 --write-map nowhere/map.toml": "nowhere",
     "judge nowhere FILE --target 1e-3": "nowhere",
@@ -47,7 +47,7 @@ OPTIONS: dict[str, str] = {
 OF_ROCKER: dict[str, str] = {
     'of = "rockr"\nkind = "angle"': "of: 'rockr' is not in scene fourbar-lecture-1; .*rocker",
     'unit = "mm"': "mm is a unit of length, and",
-    'kind = "vx"': "'vx' is no kind of reading of link roc",
+    'kind = "vx"': "'vx' is not a kind of reading of link roc",
     'relative_to = "rocker"': "'rocker'; .*another link",
     'units = "deg"': "channel.1.units: unknown key; .*unit",
     '[[channel]]\ncolumn = "rocker_deg"': "given twice",
@@ -55,7 +55,7 @@ OF_ROCKER: dict[str, str] = {
         "two columns for one quantity, angle of crank: 'crank_deg' and 'rocker_deg'"
     ),
     "offset = inf": "channel.1.offset: found inf",
-    'time = "C_x_mm"': "'C_x_mm' is no column of times",
+    'time = "C_x_mm"': "'C_x_mm' is not a column of times",
 }
 """What a map says of the column ``rocker_deg``."""
 READ = bad_logs.HEADER.split(",")[1:]
@@ -68,7 +68,7 @@ MAPS: dict[str, str] = {
     "[colums]\na = 1": "colums: unknown key; ",
     '[file]\ndecimal = "!"': "file.decimal: found '!'",
     "[[channel": "not valid TOML",
-    "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in READ): "no column is of scene",
+    "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in READ): "no column belongs to",
 }
 
 

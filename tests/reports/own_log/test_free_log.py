@@ -106,7 +106,7 @@ def test_a_linkage_that_is_open_is_told_from_a_phase_that_runs_away() -> None:
     assert "CC128" in rules(opened)
     assert any("the geometry is off" in note for note in opened.notes)
     assert phase.causes == opened.causes == ()
-    assert "not searched for causes" in no_cause_text(opened, ["rocker_rad"])
+    assert "causes are not searched" in no_cause_text(opened, ["rocker_rad"])
     assert "sensitivity" in footer(opened, {})[0]
 
 
@@ -166,7 +166,7 @@ def test_rows_of_which_the_truth_is_not_known_are_left_out_and_counted() -> None
         ),
         (TIME_S * 1e4, {}, "check the unit of its times"),
         (TIME_S, {"drive": "logged"}, "drive logged: fourbar-swing is in free motion"),
-        (TIME_S, {"target": None}, "no limit for angle: no step of a log is known"),
+        (TIME_S, {"target": None}, "no limit for angle: the step of the log is unknown"),
     ],
 )
 def test_what_is_not_judged_is_told(time_s: object, asked: dict[str, object], told: str) -> None:
@@ -187,5 +187,5 @@ def test_limits_of_the_other_kind_of_motion_are_refused_of_runs_too() -> None:
 
 def test_a_free_run_that_has_hardly_begun_is_not_judged() -> None:
     done = crankcheck.run(SWING, "mujoco", duration_s=5e-3)
-    with pytest.raises(CrankcheckError, match="5 steps; free motion is judged from"):
+    with pytest.raises(CrankcheckError, match="5 steps, and a judgement of free motion needs"):
         crankcheck.judge(SWING, done)

@@ -148,7 +148,7 @@ def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
     told = judge(PLAIN, log, "--json", file, code=1).stdout
     (cause,) = json.loads(file.read_text(encoding="utf-8"))["causes"]
     assert cause["text"][:40] in " ".join(told.split())
-    assert "none that is known" not in told
+    assert "no known cause" not in told
     assert re.search(r"belong 0\.50 samples \(\S+ ms\) earlier", cause["text"])
     late = {column.header for column in columns if column.later_s}
     assert set(cause["columns"]) == late - {"crank_omega_rad_s"}  # which is constant

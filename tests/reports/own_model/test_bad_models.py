@@ -106,7 +106,7 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "an equality within the loop": (
         planted(*tied('<joint name="E" joint1="D" joint2="B"/>')),
         "E: a <joint> equality couples coordinates of rocker (hinge D), coupler (hinge B) in the "
-        "loop, of which no closed form is known; take it out",
+        "loop, of which no closed form is known; remove it",
     ),
     "a joint of the loop that an equality holds": (
         planted(*tied('<joint name="E" joint1="D"/>')), "couples coordinates of rocker (hinge D) in"
@@ -118,8 +118,8 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "a base that its loop moves": (
         planted("<worldbody>", SLED, '<body name="rocker" pos="0.3 0 0"',
                 '</body><body name="rocker" pos="0.3 0 0"', "</worldbody>", "</worldbody>"),
-        "it turns against body sled, and not against the ground, which its loop meets too; hold "
-        "that body: take out slide sled; drivable: D",
+        "it turns against body sled, and not against the ground, which its loop meets too; fix "
+        "that body: remove slide sled; drivable: D",
     ),
     "a hinge far round": (
         planted(*rocker('ref="1e12"')),
@@ -174,7 +174,7 @@ ASKED = {
         {"joint": "B"},
         "body crank, and not against the ground; drivable: A, D",
     ),
-    "no such choice": ({"branch": {"X": 1}}, "--branch X: it chooses between no two assemblies"),
+    "no such choice": ({"branch": {"X": 1}}, "--branch X: it separates no assemblies"),
     "far round": ({"start_deg": 36001.0}, "--start 36001: that is more than 100 turns"),
     "too coarse": ({"dt_s": 0.5}, "a turn needs at least 8"),
     "too short": ({"turns": 0.1}, "take 0.127 turns or more"),
@@ -227,7 +227,7 @@ def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
     path.write_text(planted("</worldbody>", beside * 1000 + "</worldbody>"), encoding="utf-8")
     with pytest.raises(CrankcheckError, match=r"reading it crashed: .* and --memory-gb 1"):
         read(ModelRequest(path, "A", 10.0), Limits(600.0, 1.0))
-    with pytest.raises(CrankcheckError, match=r"reading it came to no end: .* --limit-s 0\.0001 s"):
+    with pytest.raises(CrankcheckError, match=r"reading it did not finish: .* --limit-s 0\.0001 s"):
         read(ModelRequest(path, "A", 10.0), Limits(1e-4, 8.0))
 
 

@@ -254,7 +254,7 @@ REFUSED: list[tuple[str, str, Mapping[str, object], str]] = [
     ("chebyshev", LEFT, {"speed_rad_s": -10.0}, "0 to -360 deg, and .*--turns 0.265 at most"),
     (
         "chebyshev", LEFT, {"start_deg": 50.0},
-        "start in between with --start, and take less of a turn with --turns",
+        "start in between with --start, and use less of a turn with --turns",
     ),
 ]  # fmt: skip
 

@@ -130,7 +130,9 @@ def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
     stored = read_store(store)
     away = replace(stored, cells=stored.cells.assign(scene="../../escaped"))
     monkeypatch.setattr("reports.requests.figures.read_store", lambda _: away)
-    with pytest.raises(CrankcheckError, match=r"'\.\./\.\./escaped' of the store: not the name"):
+    with pytest.raises(
+        CrankcheckError, match=r"'\.\./\.\./escaped' of the store: not a valid name"
+    ):
         FiguresRequest(store, tmp_path / "a" / "figs").run(Console(quiet=True), Console())
     assert list(tmp_path.rglob("*escaped*")) == []
 

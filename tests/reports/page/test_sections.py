@@ -75,7 +75,7 @@ def test_the_sentence_of_an_engine_tells_order_cost_and_floor() -> None:
     assert "Cheapest for an error of 1e-4 on every scene: tuned at 360 steps a turn" in found
     assert "720 µs a turn" in found
     assert "As shipped it is within tolerance in 0 of 4 cells: on 1 of 1 scene" in found
-    assert "the error stops falling, at 2.0e-3, however small the step" in found
+    assert "the error stops shrinking, at 2.0e-3, however small the step" in found
     told = sentences(TUNED[:2])["mujoco"]
     assert "too few steps to see a floor" in told
     assert "not excluded" not in told

@@ -25,11 +25,11 @@ def test_a_rule_or_a_clause_says_why_and_what_helps(name: str) -> None:
 
 
 REFUSED = {
-    "explain CC13": "no rule, no clause, no scene; did you mean CC1",
+    "explain CC13": "no such rule, clause or scene; did you mean CC1",
     "explain fourbar-lectur --engine mujoco": "did you mean fourbar-lecture-",
     "explain 77": "see `crankcheck scenes`",
     "explain shaper": "--engine is missing: name the one that runs shaper",
-    "explain CC110 --engine mujoco": "--engine: CC110 is no scene",
+    "explain CC110 --engine mujoco": "--engine: for a scene, and CC110 is none",
     "explain shaper --engine mujoca": "mujoco",
     "explain shaper --engine mujoco --profile tunde": "tuned",
 }

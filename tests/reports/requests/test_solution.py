@@ -139,7 +139,7 @@ def test_a_straight_start_rings() -> None:
     middle = solution.elastic["coupler"].middle
     assert abs(middle[0]) < 1e-18
     assert np.max(np.abs(middle)) > 1.2e-3
-    assert "Starts straight: it rings" in " ".join(str(solution).split())
+    assert "Starts straight: it vibrates" in " ".join(str(solution).split())
 
 
 @pytest.mark.parametrize(
@@ -148,7 +148,7 @@ def test_a_straight_start_rings() -> None:
 )
 def test_the_coarsest_description_is_no_own_witness(name: str, asked: dict[str, object]) -> None:
     (told,) = crankcheck.solve(name, [0.0, 0.02], **asked).certainty
-    found = re.search(r"next finer description.*deflections are off by about (\S+) of", told)
+    found = re.search(r"next finer description: deflections (\S+) of", told)
     assert found, told
     assert float(found[1]) > 1e-3
 

@@ -185,7 +185,7 @@ def test_of_several_versions_the_last_written_counts_unless_one_is_chosen(store:
     found = read_run(folder, None, "--old-version")
     assert {c.version for c in found.cells.values()} == {"3.7.0"}
     assert len(found.notes) == 1
-    assert "mujoco 3.9.0, 3.7.0: of each cell the last written counts" in found.notes[0]
+    assert "mujoco 3.9.0, 3.7.0: the last written of each cell counts" in found.notes[0]
     assert "--old-version chooses" in found.notes[0]
     chosen = read_run(folder, "3.9.0")
     assert {c.version for c in chosen.cells.values()} == {"3.9.0"}
@@ -233,7 +233,7 @@ SPOILT: dict[str, tuple[Change, str]] = {
     "facts": (spoil("verify.json", "{"), "verify.json: not JSON"),
     "list of facts": (spoil("verify.json", "[]"), "verify.json: no facts"),
     "deep facts": (spoil("verify.json", "[" * 100_000), "verify.json: not JSON"),
-    "facts from a pipe": (piped("verify.json"), "verify.json: a pipe, no plain file; verify again"),
+    "facts from a pipe": (piped("verify.json"), "json: a pipe, not a plain file; verify again"),
     "cells from a pipe": (piped("verify.csv"), "no stored run there"),
     "two kinds": (spoil("manifest.json", "{}"), "holds a sweep .* and a verification"),
     "not text": (lambda f: (f / "verify.csv").write_bytes(b"\xff\xfe\x00") and None, "not a CSV"),
@@ -277,7 +277,7 @@ def test_what_is_no_run_is_refused_with_what_would_be(stored: Copy, tmp_path: Pa
         tmp_path / "nowhere": "no such folder; name one that `crankcheck sweep -o` or",
         tmp_path / "inside" / "verify.csv": "a file; name the folder",
         tmp_path / "empty": "no stored run there (no manifest.json, no verify.csv)",
-        tmp_path: "in folders of it: name one of inside",
+        tmp_path: "in its folders: name one of inside",
     }.items():
         with pytest.raises(CrankcheckError) as caught:
             read_run(path)

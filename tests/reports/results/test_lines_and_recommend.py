@@ -112,7 +112,7 @@ def test_settings_without_a_cost_on_every_scene_are_said_to_be_so_or_left() -> N
     none, partly = (untimed(cell(scene, "x", 90, 1e-4, 1.0)) for scene in "ab")
     (found,) = recommendations(stored([none]), [BELOW])
     assert variant(found) is None
-    assert found.reason.startswith("x would do, but no cost is known")
+    assert found.reason.startswith("x would do, but costs of some scenes are unknown")
     assert variant(of("a y 90 1e-4 9", none)) == "y"
     assert variant(of(f"{X}, {Y}", partly)) == "y"
 

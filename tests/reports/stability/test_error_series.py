@@ -176,7 +176,7 @@ def test_a_throw_is_graded_by_energy_or_undecided_if_it_ends_early(runs: dict[st
         assert outcome(at_toggle(trial, runs[name]), 1e-2).outcome == "ok"
     grade = outcome(at_toggle(SHORT, runs["over"]), 1e-2)
     assert grade.outcome == "branch-changed"
-    assert grade.reason == "rocker went over to the other assembly"
+    assert grade.reason == "rocker moved to the other assembly"
     errors, barrier = at_toggle(OVER, runs["short"]), OVER.throw.barrier
     nearest = toggle_passage(barrier, runs["short"]).nearest_rad
     assert outcome(errors, 1e-2).outcome == "degraded"

@@ -152,7 +152,7 @@ CASES = {
         manifest(lambda said: said.update(format=9)), "format 9, written by crankcheck", 0, "anew"
     ),
     "notes": Case(lambda f: text(f / "notes.txt"), "notes.txt: not of", cure="nothing"),
-    "pipe": Case(in_place(PART, os.mkfifo), "a pipe, no plain file; 2 cells", 2),
+    "pipe": Case(in_place(PART, os.mkfifo), "a pipe, not a plain file; 2 cells", 2),
     "manifest too large": Case(
         in_place(MANIFEST, huge), f"{MOST_BYTES + 1} bytes; at most {MOST_BYTES} are", 0
     ),

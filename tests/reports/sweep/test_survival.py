@@ -51,7 +51,7 @@ if __name__ == "__main__":
 """)
 """The command, which writes each cell at once and kills itself where a part with one cell, the how
 manieth, is about to be there."""
-KEPT = ["what is done is kept; the same command continues from there", "crankcheck: interrupted"]
+KEPT = ["finished cells are kept; the same command continues from there", "crankcheck: interrupted"]
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL is POSIX")
 
 

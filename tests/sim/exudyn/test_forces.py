@@ -241,7 +241,7 @@ def test_constant_friction_takes_the_power_that_it_has_to(
 def test_what_it_can_not_be_given_is_refused_with_the_reason() -> None:
     done = ran(rubbing(FOURBAR, C=0.1), ENGINE, steps=10, drive="free", well=False)
     assert done.status == "unsupported"
-    assert "joints that nothing drives come to rest and stick" in done.reason
+    assert "joints without a drive come to rest and stick" in done.reason
     with pytest.raises(EngineError, match="none that follows the reactions"):
         opened(acted_on(FOURBAR, CoulombFriction("C", 0.1, 0.01)))
     with pytest.raises(EngineError, match=r"loads.l: found body wheel; use one of crank, coupler"):

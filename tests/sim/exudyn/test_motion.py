@@ -216,7 +216,7 @@ def test_a_spring_that_turns_a_beam_is_refused() -> None:
     start = node_start(BeamedScene(scene, 4), "straight")
     done = runs.ran(own.given, ENGINE, start=start, dt_s=1e-3, steps=10, well=False)
     assert done.status == "unsupported"
-    assert "coupler-node-4: something turns it" in done.reason
+    assert "coupler-node-4: a moment acts on it" in done.reason
 
 
 @pytest.mark.parametrize("key", ["flexural_n_m2", "axial_n", "damping_s", "density_kg_m"])

@@ -87,7 +87,7 @@ def test_what_the_text_has_no_words_for_is_refused() -> None:
     with pytest.raises(EngineError, match=r"loads.along: .* give sliders.B a mass_kg above 0"):
         opened(acted_on(load_scene("slotted-lever"), load))
     scene = replace(FOURBAR, friction={"B": CoulombFriction("B", 0.1, 0.01)})
-    with pytest.raises(EngineError, match=r"friction.B: .*constant friction alone"):
+    with pytest.raises(EngineError, match=r"friction.B: .*only constant friction"):
         build(scene, start_of(FOURBAR))
 
 
@@ -161,7 +161,7 @@ def test_loops_close_at_a_pin_that_does_not_rub_or_the_scene_is_not_held() -> No
     assert "frictionloss" not in build(FOURBAR, state)
     done = run(rubbing(FOURBAR, B=0.1, C=0.1, D=0.1), state, "mujoco", dt_s=1e-3, steps=10)
     assert done.status == "unsupported"
-    assert "friction.C asks for it; leave a pin of that loop without" in done.reason
+    assert "friction.C requires it; leave a pin of that loop without" in done.reason
 
 
 def test_a_free_rod_slows_down_at_its_rate_and_then_stands() -> None:

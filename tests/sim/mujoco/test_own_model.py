@@ -137,7 +137,7 @@ def test_a_drive_that_is_lost_is_no_verdict_on_the_model(
     monkeypatch.setattr(session, "FLYWHEEL_RATIO", 1e3)
     run, _ = started(tmp_path / "model.xml", "a bar")
     with pytest.raises(
-        EngineError, match=r"the driven joint is off by .* says nothing of the loops"
+        EngineError, match=r"the driven joint is off by .* shows nothing of the loops"
     ):
         run.record(315, 1)
 

@@ -112,11 +112,11 @@ REDUNDANT = double_parallelogram("double-parallelogram", source="test")
 @pytest.mark.parametrize(("name", "scene", "words"), [
     ("mujoco", acted_on(FOURBAR, PULSE), r"loads.push comes as a control of each step"),
     ("mujoco", load_scene("tangent"), r"tangent: driver comes as a control"),
-    ("pymunk", acted_on(FOURBAR, PUSH), r"leaves out loads\.push; take them out"),
+    ("pymunk", acted_on(FOURBAR, PUSH), r"leaves out loads\.push; remove them"),
     ("pymunk", acted_on(FREE, SPRING), r"leaves out springs\.knee, a driver in free motion"),
     ("pymunk", load_scene("tangent"), "leaves out a driver whose speed is not constant"),
     ("pymunk", REDUNDANT, "redundant links leave the reactions open"),
-    ("exudyn", acted_on(FOURBAR, PUSH), "does not cover loads; take that out"),
+    ("exudyn", acted_on(FOURBAR, PUSH), "does not cover loads; remove that"),
 ])  # fmt: skip
 def test_what_a_recipe_would_leave_out_is_refused(name: str, scene: Scene, words: str) -> None:
     start = released(scene)[0] if scene.is_free else start_of(scene)

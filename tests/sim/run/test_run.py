@@ -53,8 +53,8 @@ def test_a_scene_with_loads_is_not_run_as_if_it_had_none(name: str) -> None:
     pushed = acted_on(FOURBAR, Load("push", "rocker", None, Constant(1.0)))
     done = ran(pushed, lacking, steps=10)
     assert done.status == "unsupported"
-    assert f"{name} is given no loads (loads.push); take them out" in done.reason
-    with pytest.raises(EngineError, match=f"{name} is given no loads"):
+    assert f"{name} gets no loads (loads.push) here; remove them" in done.reason
+    with pytest.raises(EngineError, match=f"{name} gets no loads"):
         time_run(pushed, start_of(pushed), lacking, dt_s=1e-3, steps=10)
     silent = ran(FOURBAR, lacking, steps=10, with_forces=True)
     assert silent.status == "unsupported"

@@ -94,7 +94,7 @@ def equal_ripple(task: FunctionTask, start: Generator, varied: Sequence[str]) ->
         return EqualRipple(start, task.x_points, exact, exact)
     now = course.ripples(start, sign, 4 + len(varied))
     if isinstance(now, str):
-        raise CrankcheckError(f"equal ripples can not be looked for: {now}")
+        raise CrankcheckError(f"equal ripples can not be searched: {now}")
     before = now.largest
     for _ in range(STEPS):
         if now.unevenness <= max(EVEN * now.largest, ROUNDING):
@@ -103,7 +103,7 @@ def equal_ripple(task: FunctionTask, start: Generator, varied: Sequence[str]) ->
     raise CrankcheckError(
         f"no equal ripples after {STEPS} steps: the errors still differ by "
         f"{now.unevenness / now.largest:.1e} of the largest; the points of Chebyshev's spacing "
-        "stand as they are"
+        "are kept"
     )
 
 
@@ -113,7 +113,7 @@ def _one_sign(start: Generator, task: FunctionTask) -> float:
     signs = start.signs(task.input_turn(x), task.output_scales(x))
     if np.ptp(signs) > 0.0:
         raise CrankcheckError(
-            "equal ripples can not be looked for: the precision points are met in two assemblies"
+            "equal ripples can not be searched: the precision points are met in two assemblies"
         )
     return float(signs[0])
 
@@ -130,9 +130,8 @@ def _stepped(course: _Course, now: Ripples, varied: Sequence[str]) -> Ripples:
                 return after
             step = 0.5 * step
     raise CrankcheckError(
-        "no equal ripples: no step makes the largest error, "
-        f"{now.largest:.3g}, smaller, with tips that differ by {now.unevenness:.1e}; the points of "
-        "Chebyshev's spacing stand as they are"
+        f"no equal ripples: no step makes the largest error, {now.largest:.3g}, smaller, with "
+        f"tips that differ by {now.unevenness:.1e}; the points of Chebyshev's spacing are kept"
     )
 
 

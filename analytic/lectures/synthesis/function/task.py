@@ -302,6 +302,6 @@ class FunctionTask:
             leave = "both open" if most == 0 else "one of them open"
             raise CrankcheckError(
                 f"{self.count} precision points were requested with the start of the "
-                f"{' and of the '.join(given)} given; so many points find it: leave {leave}, or "
-                f"ask for {len(COUNTS) + 2 - len(given)} points"
+                f"{' and of the '.join(given)} given; so many points determine it: leave "
+                f"{leave}, or use {len(COUNTS) + 2 - len(given)} points"
             )

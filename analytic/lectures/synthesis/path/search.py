@@ -189,12 +189,12 @@ def generate(
     """
     if starts < 1 or count < 1:
         raise CrankcheckError(
-            f"{count} mechanisms from {starts} starts were requested; ask for at least one of each"
+            f"{count} mechanisms from {starts} starts were requested; give at least one of each"
         )
     if not 0.0 <= least_transmission_rad <= MOST_TRANSMISSION:
         raise CrankcheckError(
-            f"a transmission angle of {math.degrees(least_transmission_rad):g} deg, at least, was "
-            f"requested; ask for 0 to {math.degrees(MOST_TRANSMISSION):g} deg"
+            f"a transmission angle of {math.degrees(least_transmission_rad):g} deg, at least, "
+            f"was requested; give 0 to {math.degrees(MOST_TRANSMISSION):g} deg"
         )
     strict = least_transmission_rad + MARGIN * (least_transmission_rad > 0.0)
     clock = SearchClock(starts, time.monotonic() + time_s, task.radius_m, progress)

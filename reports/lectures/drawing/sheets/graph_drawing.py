@@ -52,8 +52,8 @@ class SheetLog:
         if scene.elastic:
             raise CrankcheckError(
                 f"--log {path}: {few(scene.elastic, 4)} of {scene.name} bends or stretches, and "
-                f"{drawing} are those of rigid links; `crankcheck judge` holds such a log to the "
-                "beam"
+                f"{drawing} are those of rigid links; `crankcheck judge` compares such a log "
+                "with the beam"
             )
         columns = read_columns(path, map_.file, wanted(scene, map_))
         return SheetLog.of_log(understood(columns, scene, map_))
@@ -64,7 +64,7 @@ class SheetLog:
         motion, too."""
         if not log.timed:
             raise CrankcheckError(
-                f"{log.source}: no column of times, which a drawing over the time takes; add one, "
+                f"{log.source}: no column of times, which a drawing over time needs; add one, "
                 "such as time_s"
             )
         if log.scene.is_free:
@@ -92,9 +92,9 @@ class SheetLog:
             raise CrankcheckError(
                 f"{self.log.source}: in its first row, t = {self.log.time_s[0]:.6g} s, "
                 f"{channel.name} (column {cut(channel.column)!r}) is "
-                f"{abs(float(worst.error(self.truth)[0])):.3g} {unit} off where {scene.name} has "
-                "it: the log has another scene, speed, start or unit; name its own, or count times "
-                "from the start of the motion"
+                f"{abs(float(worst.error(self.truth)[0])):.3g} {unit} from that of "
+                f"{scene.name}: the log has another scene, speed, start or unit; name its "
+                "scene, or count times from the start of the motion"
             )
 
     def _share(self, begin: Reading) -> float:
@@ -160,9 +160,9 @@ class GraphLog:
             return ""
         what, name = self.span.quantity.name, self.span.scene.name
         return (
-            f"half of its {NAMES[order]} of {what} are off by {100 * share:.0f} % of "
-            f"{SIZES[order]} or more: where no engine went so far, they are of another speed or "
-            f"unit than {name}; `crankcheck judge` helps to find which"
+            f"half of its {NAMES[order]} of {what} have errors of {100 * share:.0f} % of "
+            f"{SIZES[order]} or more: if no engine failed, the log has another speed or unit "
+            f"than {name}; `crankcheck judge` helps to find which"
         )
 
     def how(self, order: Order, x: Array) -> str:
@@ -206,7 +206,7 @@ def graph_log(path: Path, map_path: Path | None, whole: GraphSpan) -> GraphLog:
     if not held:
         names = ", ".join(dict.fromkeys(each.channel.of for each in log.readings))
         raise CrankcheckError(
-            f"{path}: no column is of {whole.quantity.name}; it has readings of {cut(names, 200)}"
+            f"{path}: no column gives {whole.quantity.name}; it has readings of {cut(names, 200)}"
         )
     first = held[min(held)]
     moved = whole.within(*(float(first.instants[at]) for at in (0, -1)))
@@ -256,8 +256,8 @@ def _refuse_short(path: Path, reading: Reading, moved: GraphSpan) -> None:
     if start > moved.start + ON_END * lasts or end < moved.end - ON_END * lasts:
         raise CrankcheckError(
             f"{path}: readings of {moved.quantity.name} from {start:.6g} s to {end:.6g} s; a "
-            f"graph takes those from {moved.start:.6g} s to {moved.end:.6g} s: log {lasts:.6g} s "
-            "or more"
+            f"graph needs those from {moved.start:.6g} s to {moved.end:.6g} s: log {lasts:.6g} "
+            "s or more"
         )
 
 

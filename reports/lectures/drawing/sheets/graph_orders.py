@@ -133,8 +133,8 @@ def told_floor(errors: GraphErrors) -> str:
         f"{each.symbol} {share(each.errors[-1])}" for each in errors.lines if each.is_own
     )
     return (
-        f"finer parts bring the errors of {errors.log.name} down to its own, beside the drawing of "
-        f"the reference: {own} in {errors.divisions[-1]} parts"
+        f"with finer parts the errors of {errors.log.name} approach its own, relative to the "
+        f"drawing of the reference: {own} in {errors.divisions[-1]} parts"
     )
 
 
@@ -174,7 +174,7 @@ def _draw(axes: Axes, errors: GraphErrors) -> None:
     seen = [error for each in errors.lines for error in each.errors if error > NOTHING]
     if not seen:
         raise CrankcheckError(
-            f"{errors.span.quantity.name} of {errors.span.scene.name} is drawn right with any "
+            f"{errors.span.quantity.name} of {errors.span.scene.name} is drawn exactly with any "
             "number of divisions: there are no errors to draw"
         )
     with styled():

@@ -130,7 +130,7 @@ def told_log(drawn: DrawnGraphs) -> list[str]:
     how = drawn.log.how(order, drawn.logged.graphs[order].x)
     read_off = share(drawn.off(drawn.logged, order))
     lines = [
-        f"{drawn.log.name}: {told_errors(drawn, drawn.logged)}; of that its own error, beside the "
+        f"{drawn.log.name}: {told_errors(drawn, drawn.logged)}; its own part, relative to the "
         f"drawing of the reference: {parts}",
         f"{symbols[order]} is read {drawn.log.span.taken}, {how}; it is off by up to {read_off}",
     ]

@@ -56,7 +56,7 @@ def placed_at_angle(
         return PlacedMechanism.of(scene, DriverState(angle_at(at_deg), omega))
     if scene.is_free:
         raise CrankcheckError(
-            f"{scene.name}: its driver is in free motion, and no law says how fast it is at "
+            f"{scene.name}: its driver is in free motion, and no law gives its speed at "
             f"{at_deg:g} deg; give --at-s for an instant of its motion, or --omega"
         )
     return PlacedMechanism.of(scene, DriverState(*driver_at(scene, at_deg)))

@@ -280,7 +280,7 @@ def check_room(many: int, paper: Paper) -> None:
         return
     field = _fields(many, paper)[0]
     fit = [name for name, size in SIZES.items() if _is_enough(many, Paper(*size))]
-    cure = f"--paper {fit[0]} would do" if fit else "ask for fewer, or give a larger WIDTHxHEIGHT"
+    cure = f"--paper {fit[0]} would do" if fit else "use fewer, or give a larger WIDTHxHEIGHT"
     raise CrankcheckError(
         f"{many} schemes do not fit on {paper.width:g} x {paper.height:g} mm: a field would be "
         f"{field.width:.0f} x {field.height:.0f} mm, and one that can be read is "

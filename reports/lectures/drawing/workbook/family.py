@@ -61,7 +61,7 @@ def check_values(name: str, values: Sequence[float]) -> None:
         )
     twice = next((value for k, value in enumerate(values) if value in values[:k]), None)
     if twice is not None:
-        raise CrankcheckError(f"--family {name}: {twice:g} stands there twice; give it once")
+        raise CrankcheckError(f"--family {name}: {twice:g} is given twice; give it once")
 
 
 def member_columns(

@@ -288,7 +288,7 @@ REFUSED = {
     "no law": (replace(shaft({}), driver=Driver("crank", Accelerating(0.0, 1.0, 1.0))),
                "swings or speeds up"),
     "Coulomb": (replace(shaft({}), friction={"C": acting.CoulombFriction("C", 0.1)}), "friction.C"),
-    "a stop": (shaft({"pull": (Sine(300.0, math.tau), "angle")}), "put a flywheel on"),
+    "a stop": (shaft({"pull": (Sine(300.0, math.tau), "angle")}), "add a flywheel, as large"),
     "no mass": (shaft({"pull": (Sine(3.0, math.tau), "angle")}, inertia=0.0), "no mass moves"),
     "elastic links": (load_scene("fourbar-elastic"), "coupler is elastic"),
     "not round": (replace(ROCKING, driver=replace(shaft({}, free=True).driver, link="driver")),

@@ -74,7 +74,7 @@ def test_the_segments_are_told_of_the_engine_and_the_phase_is_the_beams(checked:
     assert worst(checked, "phase") < raw  # over how a small change of the start has grown
     assert worst(checked, "energy") < 1e-6
     (told,) = (finding.text for finding in checked.findings if finding.rule == "CC134")
-    assert "the segments end before the engine" in told
+    assert "the segments limit the accuracy" in told
     assert checked.errors.worst("geometry") is None
     assert "no geometry: the driver's angle" in " ".join(checked.errors.notes)
     row = cell_row(checked)
@@ -91,7 +91,7 @@ def test_the_footer_says_what_stands_under_its_heads(checked: Checked) -> None:
         "engine: against the exact chain of as many segments instead",
         "angles, places and rates are over G",
         "Given as 4 segments, plain springs.",
-        f"{PULSE}, mujoco: the segments end before the engine does",
+        f"{PULSE}, mujoco: the segments limit the accuracy",
         "s over 0.15 s; G up to",
     ):
         assert part in told

@@ -230,7 +230,7 @@ def test_a_position_that_the_driver_can_not_lead_to_is_no_stop_and_what_is_chose
     assert None in own["at"]
     assert own["at"][0] is not None
     assert len(own["poses"]) == 4
-    assert "It has a fault: circuit defect." in page
+    assert "It has a defect: circuit defect." in page
     chosen = "Chosen: O2 from the middle of B1 B2, 0.3 m."
     assert chosen in construction_page(made.rocker_by_angle())
 

@@ -285,7 +285,7 @@ def test_an_order_is_told_of_what_falls_alone() -> None:
 def test_a_log_at_another_speed_is_drawn_with_a_doubt(write: Write) -> None:
     angle = ROCKER.exact(0, 1.3 * EVEN)  # which begins as the scene does
     told = told_log(drawn(write(time_s=EVEN, rocker_theta_rad=angle)))
-    assert "half of its places of rocker are off by" in told[2]
+    assert "half of its places of rocker have errors of" in told[2]
 
 
 THETA, SHORT = ROCKER.exact(0, EVEN), EVEN <= 0.4
@@ -295,8 +295,8 @@ LATE = ONCE | {"rocker_theta_rad": ROCKER.exact(0, EVEN + 0.2)}
 UNFIT: list[tuple[dict[str, Array], str]] = [
     (CUT, "to 0.628319 s: log 0.628319 s or more"),
     (LATE, "another scene, speed, start or unit"),
-    ({"time_s": EVEN, "lever_theta_rad": THETA}, "no column is of scene"),
-    ({"time_s": EVEN, "crank_theta_rad": 0.5 * np.pi + 10.0 * EVEN}, "no column is of rocker"),
+    ({"time_s": EVEN, "lever_theta_rad": THETA}, "no column belongs to scene"),
+    ({"time_s": EVEN, "crank_theta_rad": 0.5 * np.pi + 10.0 * EVEN}, "no column gives rocker"),
     (
         {"time_s": EVEN, "rocker_omega_rad_s": ROCKER.exact(1, EVEN)},
         r"\(found rates\); log places$",

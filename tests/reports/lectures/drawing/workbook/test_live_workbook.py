@@ -89,7 +89,7 @@ def test_a_family_has_every_member_s_own_numbers_and_charts(scene: str, name: st
         ("L", [3.5, -1.0], "L=-1: length of the rod; give numbers that are above 0"),
         ("omega", [1.0, 0.0], "omega=0: angular velocity of the crank; give numbers that are not"),
         ("branch", [1.0, 2.0], "branch=2: "),
-        ("L", [3.5, 2.5, 3.5], "3.5 stands there twice"),
+        ("L", [3.5, 2.5, 3.5], "3.5 is given twice"),
         ("L", [3.5], "1 values; give 2 to 20"),
         ("crank", [0.1, 0.5], r"--family crank=0.5: .* choose another crank"),
     ],
