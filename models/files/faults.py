@@ -11,6 +11,8 @@ from models.errors import SceneError, cut, shown, suggestion
 from models.files.inputs import UnreadableError, regular_text, tables
 
 M = TypeVar("M", bound=BaseModel)
+OF_PYDANTIC = ("[key]", "list[", "constrained-str")
+"""Parts of a place that the file has not: a key itself, and kinds of values."""
 
 
 def read_table(path: Path, model: type[M], place: str = "") -> M:
@@ -38,17 +40,17 @@ def validated(
     try:
         return model.model_validate(raw)
     except ValidationError as error:
-        for fault in error.errors():
-            if fault["loc"][:1] == ("driver",) and isinstance(raw.get("driver"), list):
-                continue  # `reading.parse_scene` says it better
-            faults.append(_line(model, prefix, fault))
+        found = error.errors()
+        if isinstance(raw.get("driver"), list):  # `reading.parse_scene` says it better
+            found = [fault for fault in found if fault["loc"][:1] != ("driver",)]
+        faults += dict.fromkeys(_line(model, prefix, fault) for fault in found)
         return None
 
 
 def _line(model: type[BaseModel], prefix: str, fault: ErrorDetails) -> str:
     kind, message = fault["type"], fault["msg"]
     places = (part + 1 if isinstance(part, int) else part for part in fault["loc"])
-    parts = [str(part) for part in places if part != "[key]"]
+    parts = [part for part in map(str, places) if not part.startswith(OF_PYDANTIC)]
     key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
     if kind == "missing":
         return f"{key}: missing; add it"

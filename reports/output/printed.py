@@ -119,20 +119,16 @@ def _html(printed: Text | Table, style: Style | str) -> str:
 def _markdown(printed: Text | Table, style: Style | str) -> str:
     if isinstance(printed, Text):
         return "  \n".join(plain(line) for line in printed.plain.splitlines())
-    rows = [[_flat(cell) for cell in row] for row in _rows(printed)]
-    heads = [_flat(each.header) + ":" * (each.justify == "right") for each in printed.columns]
+    rows = [[_text(cell).plain for cell in row] for row in _rows(printed)]
+    heads = [_text(each.header).plain + ":" * (each.justify == "right") for each in printed.columns]
     if not printed.show_header or not any(heads):
         return "\n".join(f"- {plain(' '.join(row))}" for row in rows)
-    title = f"**{plain(_flat(printed.title))}**\n\n" * bool(printed.title)
+    title = f"**{plain(_text(printed.title).plain)}**\n\n" * bool(printed.title)
     return title + table(heads, rows, COMMENT // 3, "rows")
 
 
 def _rows(table: Table) -> Iterable[Sequence[object]]:
     return zip(*(column.cells for column in table.columns), strict=True)
-
-
-def _flat(cell: object) -> str:
-    return _text(cell).plain
 
 
 def _text(cell: object, *, literal: bool = False) -> Text:

@@ -33,11 +33,11 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, StrictFloat, StrictInt, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import BaseModel, ConfigDict, Field, StrictFloat, StrictInt
 from yaml.constructor import ConstructorError
 
-from models.errors import CrankcheckError, cut, listed, shown, suggestion
+from models.errors import CrankcheckError, cut, listed
+from models.files.faults import table_of
 from models.files.inputs import DEEPEST, UnreadableError, refuse_extreme, regular_text, tables
 from sim.engine import SettingValue
 
@@ -126,20 +126,17 @@ def load_study(path: Path | None) -> Study:
         raise CrankcheckError(
             f"study {path}: found {kind or 'no ending'}; use .toml, .yaml or .yml"
         )
+    place = f"study {path}"
     try:
         text = regular_text(path)
         raw = tables(text) if kind == ".toml" else value(text)
     except UnreadableError as error:
-        raise CrankcheckError(f"study {path}: {error}") from None
-    try:
-        study = Study.model_validate(raw)
-    except ValidationError as error:
-        faults = list(dict.fromkeys(_fault(fault) for fault in error.errors()))
-        if isinstance(raw, dict) and not {"steps_per_turn", "free"} & set(raw):
-            faults.append("steps_per_turn: missing; add it")
-        raise CrankcheckError(listed(f"study {path}", faults)) from None
+        raise CrankcheckError(f"{place}: {error}") from None
+    if not isinstance(raw, dict):
+        raise CrankcheckError(f"{place}: a table of scenes, variants and steps_per_turn is needed")
+    study = table_of(raw, Study, place)
     if faults := list(_unsaid(study)):
-        raise CrankcheckError(listed(f"study {path}", faults))
+        raise CrankcheckError(listed(place, faults))
     return study
 
 
@@ -154,20 +151,6 @@ def _unsaid(study: Study) -> Iterator[str]:
         yield "duration_s: found it with free = false; give turns"
     if study.free and study.drive != "prescribed":
         yield f"drive: found {study.drive!r} with free = true; leave it out"
-
-
-def _fault(fault: ErrorDetails) -> str:
-    """Return one fault of a study file: key, value found, and a cure."""
-    parts = [str(part) for part in fault["loc"] if not str(part).startswith(("list[", "constr"))]
-    key, message = ".".join(map(cut, parts)) or "study", fault["msg"]
-    if fault["type"] == "extra_forbidden":
-        keys = Variant.model_fields if parts[0] == "variants" else Study.model_fields
-        return f"{key}: unknown key; {suggestion(parts[-1], keys, 'known:', 1, 0.6)}"
-    if fault["type"] == "missing":
-        return f"{key}: missing; add it"
-    if not parts:
-        return "study: a table of scenes, variants and steps_per_turn is needed"
-    return f"{key}: found {shown(fault['input'])}; {message[0].lower()}{message[1:]}"
 
 
 def _short(value: object) -> str:

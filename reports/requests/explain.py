@@ -86,8 +86,7 @@ class ExplainRequest:
             turns = [f"{each.rule}: {each.cure}" for each in checked.failures[:1] if each.cure]
         else:
             yield from _by_part(checked.errors, checked.convergence, worst, run)
-            limited = [finding for finding in checked.findings if not math.isnan(finding.taken)]
-            most = max(limited, key=lambda finding: finding.taken)
+            most = max(checked.findings, key=lambda each: each.taken if each.taken > 0.0 else 0.0)
             taken = f"{RULES[most.rule].title}, error / limit {readable(most.taken, 2)}"
             yield "limit that binds", f"{most.rule} {taken}: {most.text}"
             yield from _limit(most.rule)
@@ -117,12 +116,14 @@ def _by_part(
     yield "error", f"{worst.quantity} of {worst.body} {size}, of which"
     place, parts = (worst.quantity, worst.body, "geometric"), dict[str, float]()
     rest = worst.pure
-    for geometric in (row for row in errors.rows if (row.quantity, row.body, row.kind) == place):
-        parts["drive"] = max(rest - geometric.pure, 0.0)
+    for row in errors.rows:
+        if (row.quantity, row.body, row.kind) == place:
+            parts["drive"] = max(rest - row.pure, 0.0)
     rest -= sum(parts.values())
+    if seen and math.isfinite(seen.floor):
+        parts["model floor"] = min(seen.floor, rest)
     if seen:
-        floor = {"model floor": min(seen.floor, rest)} if math.isfinite(seen.floor) else {}
-        parts |= floor | {"discretisation": rest - sum(floor.values())}
+        parts["discretisation"] = rest - parts.get("model floor", 0.0)
     for part in sorted(parts, key=parts.__getitem__, reverse=True):
         yield f"  {part} {error_text(parts[part])}", HELPS[part]
     if seen:

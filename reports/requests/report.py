@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.output.console import say, tell
+from reports.output.console import put, tell
 from reports.output.write import check_file, write
 from reports.requests.arguments import path_of, told_at_the_call
 from reports.requests.options import argument, option, output_option
@@ -109,12 +109,8 @@ class ReportRequest:
             output = Path("report.html")
         check_file(output, "-o", ENDINGS[format])
         made = report_of(self.folder, format)
-        if output is None:
-            console.file.write(made.text)
-            return 0
-        write(output, made.text)
         size = len(made.text.encode()) / 1e6
-        say(console, f"{output}: {made.content}, {size:.1f} MB")
+        put(console, output, made.text, f"{made.content}, {size:.1f} MB")
         return 0
 
 

@@ -71,16 +71,14 @@ class VerifyRequest(VerifyOptions):
         checked = known.marked(checked, failing)
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
+        shows: list[Print] = [partial(show, checked=checked, facts=facts)]
         diff = None
         if base:
+            from reports.diff.document import show_diff
             from reports.results.changes import compare
             from reports.results.runs import run_of
 
             diff = compare(base, run_of(checked, facts, digests), self.factor)
-        shows: list[Print] = [partial(show, checked=checked, facts=facts)]
-        if diff:
-            from reports.diff.document import show_diff
-
             shows.append(partial(show_diff, diff=diff))
         title = f"verify: {summary(checked).plain}"
 
