@@ -158,7 +158,7 @@ SCAN = 1440
 """Angles of the first scan of a turn; between two of them, it is refined where the mechanism is
 nearest to closing, or to opening."""
 NARROW = 20 * math.tau / SCAN
-"""Width of a range [rad] below which it is scanned anew."""
+"""Width of a range [rad] below which it is scanned again."""
 ZOOMS, FINER = 5, 33
 """Number of refinements of the smallest shortage between samples, and of places in each."""
 
@@ -208,7 +208,7 @@ def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
 
 
 def _closer(stretched: Stretched, whole: Range) -> list[Range]:
-    """Scan a range anew that is so narrow that few samples fell into it: it may have gaps."""
+    """Scan again a range that is so narrow that few samples fell into it: it may have gaps."""
     low, high = whole
     if high - low > NARROW:
         return [whole]

@@ -1,9 +1,9 @@
 """Rotatability of links against the ground and their neighbours, and swing of the others.
 
-All is over the mechanism's own branch, or over a whole circuit, which a mechanism in free motion
-goes through. Where the driver turns fully, whole turns are counted with certainty
-(`analytic.change_points.turns`); else a link goes to and fro with the driver, between its extremes
-over the branch, each followed to rounding, or it turns as the circuit closes.
+Ranges are those of the mechanism's own branch, or of a whole circuit in free motion. Where the
+driver turns fully, whole turns are counted with certainty (`analytic.change_points.turns`); else a
+link goes to and fro with the driver, between its extremes over the branch, each followed to
+rounding, or it turns as the circuit closes.
 
 Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions,
 toggle).
