@@ -85,7 +85,7 @@ class Prepared:
 
     @property
     def looked_turns(self) -> int:
-        """Turns of the driver over which its range is looked for (`ranges`): a followed group is
+        """Turns of the driver over which its range is searched (`ranges`): a followed group is
         back after as many as it has assemblies, or ends; one on gears with theirs."""
         if self.scene.driver.slider is not None:
             return 1

@@ -146,7 +146,7 @@ class _ValleySearch:
         return np.asarray(theta + shift)
 
     def _is_touched(self, theta: Array) -> Mask:
-        """Return the mask where the root is zero but for rounding.
+        """Return the mask where the root is zero up to rounding.
 
         Raises
         ------

@@ -148,7 +148,7 @@ UNITS: Mapping[str, Mapping[str, float]] = {
         "lbf_ft": POUND * 12 * INCH,
     },
 }
-"""Size of each unit in SI, by its spelling: in letters of any case, but for milli and mega."""
+"""Size of each unit in SI, by its spelling: in letters of any case, except milli and mega."""
 TIMES = "force_time_s"
 Place = tuple[Literal["torque", "push", "pin", "normal", "moment"], str, str, int]
 """Content of a column: kind, point or slider, body, and axis; a push drives a slider."""

@@ -29,7 +29,7 @@ from models.scene.joints import block_name, joined_at
 LOOKS = 2880
 ZOOMS, FINER = 8, 33
 STILL_RAD = 1e-9
-"""Largest swing of links that keep their angle but for rounding."""
+"""Largest swing of links that keep their angle up to rounding."""
 
 
 @dataclass(frozen=True)
@@ -185,7 +185,7 @@ class _Follower:
 
 
 def plain_angles(scene: Scene, theta: Array) -> dict[str, Array]:
-    """Return the angles of all links but for whole turns, by the motion with its change points."""
+    """Return the angles of all links up to whole turns, by the motion with its change points."""
     chunk = prepared(scene).stretched(theta)
     found = {}
     for name in scene.links:

@@ -157,7 +157,7 @@ class _Newton:
 
     def _holds(self, solution: PeriodicSolution) -> bool:
         """True if a solution belongs to a machine that goes on, at the wanted speed; the steps may
-        also end where it all but stops."""
+        also end where it nearly stops."""
         (_, *high), (_, *low) = self._extremes(solution)
         fast, slow = (math.sqrt(2.0 * energy / inertia) for energy, inertia in (high, low))
         mean = self.wanted.mean_rad_s
