@@ -85,7 +85,7 @@ class Prepared:
 
     @property
     def looked_turns(self) -> int:
-        """Turns of the driver over which its range is looked for (`ranges`): a followed group is
+        """Turns of the driver over which its range is searched (`ranges`): a followed group is
         back after as many as it has assemblies, or ends; one on gears with theirs."""
         if self.scene.driver.slider is not None:
             return 1
@@ -158,7 +158,7 @@ SCAN = 1440
 """Angles of the first scan of a turn; between two of them, it is refined where the mechanism is
 nearest to closing, or to opening."""
 NARROW = 20 * math.tau / SCAN
-"""Width of a range [rad] below which it is scanned anew."""
+"""Width of a range [rad] below which it is scanned again."""
 ZOOMS, FINER = 5, 33
 """Number of refinements of the smallest shortage between samples, and of places in each."""
 
@@ -208,7 +208,7 @@ def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
 
 
 def _closer(stretched: Stretched, whole: Range) -> list[Range]:
-    """Scan a range anew that is so narrow that few samples fell into it: it may have gaps."""
+    """Scan again a range that is so narrow that few samples fell into it: it may have gaps."""
     low, high = whole
     if high - low > NARROW:
         return [whole]

@@ -3,8 +3,8 @@
     verdict = crankcheck.check("fourbar-lecture-1", "mujoco")
     print(verdict)
 
-The public face is what ``__all__`` lists, and `crankcheck.testing`: docs/python.md shows all of it;
-and `crankcheck.engine`, for engines of your own: docs/how-to/add-an-engine.md. Every other module,
+The public face is ``__all__``, and `crankcheck.testing`: docs/python.md shows all of it; and
+`crankcheck.engine`, for engines of your own: docs/how-to/add-an-engine.md. Every other module,
 class and function is private, and may change from one version to the next without a word in
 CHANGELOG.md.
 

@@ -1,4 +1,4 @@
-"""Errors that a user can cause, and can mend.
+"""Errors that a user can cause, and can correct.
 
 Each message states the request, the fault and the remedy. The command line prints the message and
 exits with 2; anything else that escapes is a fault of crankcheck.

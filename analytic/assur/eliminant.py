@@ -224,7 +224,7 @@ def places_on_line(
         P = (-k u + q n) / g,      n = (-u_y, u_x),  g = u.u,  q any number,
 
     and the third row is at most quadratic in q. Exact division by the polynomial of the root, never
-    a ball, tells zero from small values at a root.
+    a ball, separates zero from small values at a root.
     """
     lines = [row for row in rows if not root.zero(*row.u)]
     if not root.zero(*(row.k for row in rows if root.zero(*row.u))):

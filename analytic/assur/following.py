@@ -196,7 +196,7 @@ NARROWEST = 1e-10
 MOST = 20_000
 """Most poses of a track."""
 SIDE = 1e-4
-"""Distance beyond a crossing at which the other side is looked for [rad]."""
+"""Distance beyond a crossing at which the other side is searched [rad]."""
 
 
 @dataclass(frozen=True)

@@ -195,7 +195,7 @@ def _within(body: BodyKinematics, point: PointError, angle: AngleError) -> BodyK
 
 
 def widened(body: BodyKinematics, e: Real, t: Real) -> BodyKinematics:
-    """Return a pose that is known but for ``e`` [m] in its place and ``t`` [rad] in its angle."""
+    """Return a pose that is known except ``e`` [m] in its place and ``t`` [rad] in its angle."""
     return _within(body, PointError(e, 0.0, 0.0), AngleError(t, 0.0, 0.0))
 
 

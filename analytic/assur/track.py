@@ -63,7 +63,7 @@ class AssemblyTrack:
         return TrackPiece(poses, TrackEnd(last.theta, "doubtful position"), crossings), None
 
     def _is_start(self, pose: CentralPose) -> bool:
-        """True if a pose is that of the start, but for whole turns: different ones are as far apart
+        """True if a pose is that of the start, up to whole turns: different ones are as far apart
         as the boxes of cells are wide, and rounding is much less."""
         off = math.dist(pose.place, self.start.place)
         turned = math.remainder(pose.angle - self.start.angle, math.tau)

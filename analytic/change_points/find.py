@@ -69,7 +69,7 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
             continue
         closure = chunk.closures.get(step.key)
         if closure is None or closure.root is None or np.ndim(closure.root) == 0:
-            continue  # the last: it hangs on what stands still, and so stands still itself
+            continue  # the last: it is pinned to resting bodies, and so rests itself
         valleys = theta[_valleys(closure.root)]
         if not valleys.size:
             continue
@@ -116,7 +116,7 @@ class _ValleySearch:
         """Return the angles in which the root touches zero, among those near which it might."""
         theta = self._tip(theta, math.tau / SCAN)
         sides = self._closure(theta + np.array([[-1.0], [1.0]]) * WIDTHS[0])[1]
-        theta = theta[(sides < 0.0).all(axis=0)]  # limit positions are most of what is left here
+        theta = theta[(sides < 0.0).all(axis=0)]  # most of the rest are limit positions
         if not theta.size:
             return theta
         for width in WIDTHS:
@@ -146,7 +146,7 @@ class _ValleySearch:
         return np.asarray(theta + shift)
 
     def _is_touched(self, theta: Array) -> Mask:
-        """Return the mask where the root is zero but for rounding.
+        """Return the mask where the root is zero up to rounding.
 
         Raises
         ------

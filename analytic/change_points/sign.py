@@ -71,7 +71,7 @@ class Interpolant:
     def of(
         fine: tuple[Array, Array], coarse: tuple[Array, Array], half: float, *, turning: bool
     ) -> Interpolant:
-        """Make the series of some nodes, compared with others; angles but for whole turns."""
+        """Make the series of some nodes, compared with others; angles up to whole turns."""
         values, bounds = fine
         at = PROBES * WINDOW
         seen = values @ weights(COUNT, at).T
@@ -361,6 +361,6 @@ def rates_at(driver: DrivenCoordinate, index: Index) -> Rates:
 
 
 def whole_turns_off(angle: float) -> float:
-    """Return a driver angle in [0, 2 pi), 0 where it is that but for rounding."""
+    """Return a driver angle in [0, 2 pi), 0 where it is that up to rounding."""
     turned = angle % math.tau
     return 0.0 if min(turned, math.tau - turned) < AT_START else turned

@@ -150,12 +150,12 @@ class Cells:
     """Cells in the order of their driver angles.
 
     By cell: its middle and half its width [rad], the angle of each link in the middle (stretched
-    where the mechanism is open) but for whole turns, the largest deviation of any link from there
+    where the mechanism is open) up to whole turns, the largest deviation of any link from there
     wherever in the cell the mechanism closes, and True if it is open all over the cell.
 
     ::
 
-        angle |            ____        An arctan2 gives the angle of a link but for whole turns.
+        angle |            ____        An arctan2 gives the angle of a link up to whole turns.
         Over
               |  +----+  _/  +----+   a cell it stays within a bound of that in the middle of the
               |  |   _|_/    |    |   cell, which says of every angle there which turn is meant, and

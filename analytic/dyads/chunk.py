@@ -131,7 +131,7 @@ class Chunk:
     ) -> Dyad[First, Second]:
         """Return a dyad of two assemblies on the scene's branch, times ``side``.
 
-        In a change point it may be open by rounding, which `keep` mends.
+        In a change point it may be open by rounding, which `keep` corrects.
         """
         branch: Real = self.scene.branch.get(key, 1) * side
         stretch = self.stretch
@@ -142,12 +142,12 @@ class Chunk:
         return self.keep(key, free)
 
     def keep(self, key: str, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
-        """Return the solved dyad, mended in its change points, and note its conditioning."""
+        """Return the solved dyad, corrected in its change points, and note its conditioning."""
         passage = self.passages.get(key)
         if passage is not None:
             dyad = passage.mend(self, dyad)
         self.sines[key] = dyad.sine
-        if dyad.closure.short_m is not None:  # else nobody asks, and its memory is used again
+        if dyad.closure.short_m is not None:  # else it is not needed, and its memory is used again
             self.closures[key], self.shortage[key] = dyad.closure, dyad.closure.short_m
         return dyad
 

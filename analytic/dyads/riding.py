@@ -85,7 +85,7 @@ def turning_body(
     found: Turning, back: Vec, local: Point, anchor: PointKinematics, rounding: float = 0.0
 ) -> BodyKinematics:
     """Return the body whose frame has the angle of ``found`` less that of ``back``, which is known
-    but for ``rounding`` [rad]."""
+    up to ``rounding`` [rad]."""
     aligned = back.x == 1.0 and back.y == 0.0
     turn = found.turn if aligned else found.turn.turned(Vec(back.x, -back.y))
     error = found.error
@@ -97,7 +97,7 @@ def turning_body(
 def following_body(
     known: BodyKinematics, by: float, rounding: float, local: Point, anchor: PointKinematics
 ) -> BodyKinematics:
-    """Return the body at the angle ``by``, known but for ``rounding`` [rad], to a known body."""
+    """Return the body at the angle ``by``, known up to ``rounding`` [rad], to a known body."""
     theta = None if known.theta is None else known.theta + by
     error = known.error
     if error is not None:

@@ -118,7 +118,7 @@ def _errors(
     assert p2.error is not None
     first, second = dyad.first, dyad.second
     l1, l2 = first.length, second.length
-    # The computed vectors close but for the rounding of their difference; they are not quite as
+    # The computed vectors close up to the rounding of their difference; they are not quite as
     # long as the links, whose lengths are rounded too.
     off1, off2 = np.abs(first.turn.norm() - l1), np.abs(second.turn.norm() - l2)
     residual = off1 + off2 + p1.error.position + p2.error.position + 4 * EPS * (l1 + l2)

@@ -76,7 +76,7 @@ class ControlledForces(GeneralisedForces):
         return needed - law.kp_n_m_rad * ahead - law.kd_n_m_s * faster
 
 
-@lru_cache(maxsize=16)  # every round of Newton's method asks for the same instants
+@lru_cache(maxsize=16)  # every round of Newton's method needs the same instants
 def _needed(rigid: Same, time_s: tuple[float, ...]) -> Array:
     """Return the driving torque of a rigid mechanism that follows its law exactly [N m], (T,)."""
     instants, place = np.unique(np.array(time_s), return_inverse=True)

@@ -79,7 +79,8 @@ ENDED = 1e-13
 CLOSE = 1e-13
 """Step of Newton's method, over the largest coefficient, after which none is taken."""
 MOST_STEPS, SLOW = 60, 0.3
-"""Most steps; and the largest ratio of a step to the last before the derivatives are taken anew."""
+"""Most steps; and the largest ratio of a step to the last before the derivatives are computed
+again."""
 FIRST = 1e-4
 """Deflection for the first derivatives, over the longest link."""
 FAR = 0.5

@@ -8,7 +8,7 @@ other coordinate follows from the joints, so that there are no multipliers::
     B^T M B z'' = B^T (Q - M (b phi'' + c))
 
 which is the principle of virtual power over all motions that the joints allow. It is independent of
-the multibody form with multipliers but for the equations of the joints themselves. Source:
+the multibody form with multipliers except the equations of the joints themselves. Source:
 R. von Schwerin, MultiBody System SIMulation, chapter 2 (coordinate partitioning).
 """
 

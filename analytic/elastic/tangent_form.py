@@ -9,9 +9,9 @@ coefficients of elastic ones stay as they are). Every closed position near by ha
     B^T M B y'' = B^T (Q - M c)
 
 so there are as many y as freedoms, rigid and elastic alike; no multipliers, no drift from the
-joints, and no leading coordinate: a crank may turn back. The tangent is taken anew along the
-motion. Source: E. J. Haug, J. Yen, Implicit Numerical Integration of Constrained Equations of
-Motion, Mech. Struct. Mach. 19, 1991 (tangent space parametrisation).
+joints, and no leading coordinate: a crank may turn back. The tangent is updated along the motion.
+Source: E. J. Haug, J. Yen, Implicit Numerical Integration of Constrained Equations of Motion, Mech.
+Struct. Mach. 19, 1991 (tangent space parametrisation).
 """
 
 from dataclasses import dataclass

@@ -35,7 +35,7 @@ CLOSE, NEARLY = 1e-13, 1e-9
 stiff or hardly bent links: the change of coefficients, over the longest link, or nearly over their
 size and movement in a window."""
 SLOW = 0.3
-"""Largest ratio of a round's step to the last before the derivatives are taken anew."""
+"""Largest ratio of a round's step to the last before the derivatives are computed again."""
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ def self_locking(scene: Scene, count: int = LOOKS) -> tuple[LockedRange, ...]:
     Raises
     ------
     CrankcheckError
-        As `analytic.forces.kinetostatics.forces`, but for dead points and locked positions; a
+        As `analytic.forces.kinetostatics.forces`, except dead points and locked positions; a
         driver law without a period.
     """
     if not scene.coulomb_joints:
@@ -176,7 +176,7 @@ def efficiency(scene: Scene, count: int = LOOKS) -> Efficiency:
     Masses take power and give it back: it is zero over a cycle, and counts at an instant as power
     that goes on. Loads over time count as in the first cycle.
 
-    Raises CrankcheckError as `analytic.forces.kinetostatics.forces`, but for dead points and locked
+    Raises CrankcheckError as `analytic.forces.kinetostatics.forces`, except dead points and locked
     positions, and for a driver law without a period.
     """
     time_s, part_s = looks(scene, count), cycle_s(scene) / count

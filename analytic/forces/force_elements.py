@@ -260,7 +260,7 @@ def _bodies_of_pin(scene: Scene, structure: Structure, joint: str) -> tuple[str,
 
 
 def _against(chunk: Chunk, moving: Bounded, length_m: float) -> Bounded:
-    """Return the opposite direction of a rate; none for a rate that is 0 but for rounding."""
+    """Return the opposite direction of a rate; none for a rate that is 0 up to rounding."""
     least = STILL * length_m * np.abs(chunk.driver.omega)
     rate = np.broadcast_to(np.asarray(moving.value, dtype=np.float64), chunk.theta.shape)
     sign = np.where(np.abs(rate) > least, -np.sign(rate), 0.0)

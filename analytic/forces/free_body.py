@@ -56,7 +56,7 @@ class FreeBody:
         return BoundedVec(v, size, (size + apart) * (self.body.error.theta + ROUGH) + apart)
 
     def unit(self, angle_rad: float, rounding: float) -> BoundedVec:
-        """Return the unit vector at an angle, known but for ``rounding``, to the body's frame."""
+        """Return the unit vector at an angle, known up to ``rounding``, to the body's frame."""
         v = self.body.unit(angle_rad)
         if self.body.error is None:
             return BoundedVec(v, 0.0, None)

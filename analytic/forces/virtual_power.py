@@ -76,7 +76,7 @@ class ReducedMachine:
 def reduced_machine(scene: Scene, time_s: ArrayLike) -> ReducedMachine:
     """Reduce the machine to its driver, at the given times under its driver's law.
 
-    Raises as `analytic.forces.kinetostatics.forces`, but for dead points, where it is not finite.
+    Raises as `analytic.forces.kinetostatics.forces`, except at dead points, where it is not finite.
 
     With rates v' and theta' per unit of the driver's rate, its reduced moment of inertia and the
     reduced torque of weights, loads and springs are::

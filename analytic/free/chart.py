@@ -25,7 +25,7 @@ from models.scene import Scene
 from models.scene.driver import Released
 
 BEYOND = (1e-9, 1e-6, 1e-4, 1e-2)
-"""Distances beyond a limit at which the open dyad is looked for [rad]."""
+"""Distances beyond a limit at which the open dyad is searched [rad]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ class LimitedScene:
 
 
 def _range_about(spans: list[tuple[float, float]], driver_rad: float) -> tuple[float, float] | None:
-    """Return the range that holds an angle, but for rounding, moved by whole turns to it."""
+    """Return the range that holds an angle, up to rounding, moved by whole turns to it."""
     room = 1e-9
     for low, high in spans:
         turns = math.tau * math.ceil((driver_rad - high - room) / math.tau)

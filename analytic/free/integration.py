@@ -231,7 +231,7 @@ class Integration:
 
 
 LOOKS, LOOKED = 257, 7
-"""Number of instants at which an end of rest is looked for, and of refinements."""
+"""Number of instants at which an end of rest is searched, and of refinements."""
 TINY = 1e-150
 """Rate that only gives the direction of the beginning motion."""
 

@@ -81,7 +81,7 @@ def kinked(machine: Machine, u: Array, v: Array) -> list[Kinked]:
     """Return all formulas of the scene that have kinks, at coordinates and rates (T,)."""
     zero = np.zeros(1)
 
-    @cache  # loads over the angle ask for no more than the driver
+    @cache  # loads over the angle need only the driver
     def unit() -> Chunk:
         return machine.chart.unit(u)
 

@@ -205,7 +205,7 @@ class _Passing:
         limit, closure = self.limit, dyad.closure
         assert closure.short_m is not None
         short = np.broadcast_to(closure.short_m, self.u.shape)
-        # Beside the limit it closes, but for rounding; beyond its reach the root is not known. The
+        # Beside the limit it closes, up to rounding; beyond its reach the root is not known. The
         # square of a root may be larger than its argument.
         beside = self.u * self.u <= REACH * limit.length_rad * (1.0 + 4.0 * EPS)
         if not beside.all():

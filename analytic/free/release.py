@@ -124,7 +124,7 @@ def _passages(history: CoordinateHistory) -> Iterator[LimitPassage]:
         u = sums(np.ones((17, 1)) * window.u, share)
         for k in np.flatnonzero((u[:-1] < 0.0) != (u[1:] < 0.0)):
             if u[k] == 0.0 and window.start_s == 0.0 and k == 0:
-                continue  # it is let go there
+                continue  # it is released there
             time_s = window.start_s + window.long_s * _zero(window, share[k], share[k + 1])
             yield LimitPassage(time_s, limit.dyad, limit.driver_rad)
 

@@ -30,8 +30,8 @@ Teeth = tuple[int, int]
 @dataclass(frozen=True)
 class PlanetStage:
     """A planet on a carrier between two central gears, ``teeth`` by mesh, at ``angle_rad`` from
-    their centre. ``kind`` is what equal planets have in common; ``most`` of them, evenly spread,
-    clear each other's addendum circles."""
+    their centre. ``kind`` is common to equal planets; ``most`` of them, evenly spread, clear each
+    other's addendum circles."""
 
     planet: str
     kind: tuple[object, ...]

@@ -17,7 +17,7 @@ from models.scene.pairs import CamPair
 
 
 def angle_of(body: BodyKinematics) -> Real:
-    """Return the angle of a body [rad], but for whole turns where it is not known with them."""
+    """Return the angle of a body [rad], up to whole turns where it is not known with them."""
     return np.arctan2(body.turn.y, body.turn.x) if body.theta is None else body.theta
 
 

@@ -104,7 +104,7 @@ class Cycle:
         )
 
     def refuse_singular(self, phase: Array, motion: Motion) -> None:
-        """Refuse a cycle in which a dyad all but loses its position, change points apart: an output
+        """Refuse a cycle in which a dyad nearly loses its position, change points apart: an output
         may run to infinity there. Raises CrankcheckError."""
         passed = {crossing.dyad for crossing in motion.crossings}
         for key, sine in motion.conditioning.items():

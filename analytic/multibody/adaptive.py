@@ -43,7 +43,7 @@ stages of a step are projected onto the constraints as well: their errors, large
 count there over that value."""
 EPS = float(np.finfo(float).eps)
 AGAIN = 0.5
-"""Ratio of smallest singular values after which a passage is looked for again."""
+"""Ratio of smallest singular values after which a passage is searched again."""
 
 
 @dataclass(frozen=True)

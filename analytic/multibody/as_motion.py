@@ -77,7 +77,7 @@ def logged_places(assembly: Assembly, logged: Motion, freedoms: int) -> Array:
     as there are ``freedoms``; NaN where no such position is next to the log.
 
     The kept coordinates are those that determine the position best at each instant, angles of links
-    where possible: a chain of pendulums keeps all angles, and all pins are placed anew.
+    where possible: a chain of pendulums keeps all angles, and all pins are placed again.
     """
     rough = _coordinates(assembly, logged)
     found = np.full_like(rough, np.nan)

@@ -230,7 +230,7 @@ class JointEquations:
                 yield point, first, other
 
     def gaps(self, now: Configuration) -> Array:
-        """Return the violation of each equation [m or rad], (T, m); angles but for whole turns."""
+        """Return the violation of each equation [m or rad], (T, m); angles up to whole turns."""
         place = now.place
         pins = place[:, self._first, :2] - place[:, self._other, :2]
         rows = np.empty((len(place), self.count))

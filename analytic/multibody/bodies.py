@@ -224,7 +224,7 @@ class EnergyBalance:
 
     @property
     def balance(self) -> Array:
-        """Constant but for errors: energy less the work that was put in [J], (T,)."""
+        """Constant up to errors: energy less the work that was put in [J], (T,)."""
         return np.asarray(self.kinetic + self.potential - self.work)
 
     @staticmethod

@@ -113,7 +113,7 @@ class GeneralisedForces:
         along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         across = np.stack([-along[:, 1], along[:, 0]], axis=1)
         away = now.place[:, tip, :2] - now.place[:, guide, :2]
-        aside = (across * away).sum(axis=1)  # 0 but for what the joint is open
+        aside = (across * away).sum(axis=1)  # 0 except for the gap of the joint
         drawn = now.gradient[:, tip, :2] - now.gradient[:, guide, :2]
         gradient = (along[:, None] @ drawn)[:, 0] + aside[:, None] * now.gradient[:, guide, 2]
         speed = (gradient * now.rates).sum(axis=1)

@@ -173,7 +173,7 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
         shift = after - before + joints.whole_turns(spring, end - start)
     else:
         signs, shift = {sliding_joint(tree.limbs, spring.slider): 1}, 0.0
-    if not signs:  # they never turn against each other; a tendon asks for a joint all the same
+    if not signs:  # they never turn against each other, but a tendon needs a joint
         signs = {next(freedom.name for limb in tree.limbs for freedom in limb.freedoms): 0}
     slack = spring.free - shift
     sense = -1 if slack < 0.0 else 1
@@ -246,7 +246,7 @@ def planned(
     """Plan the tree of a scene, with all joints with friction in it.
 
     Engines have constant friction (MuJoCo's ``frictionloss``) in hinges and slides of the tree;
-    what closes a loop has none. So loops close at pins without friction. Raises EngineError as
+    loop closures have none. So loops close at pins without friction. Raises EngineError as
     `models.mjcf.tree.plan`, and where every way to close the loops takes a pin with friction.
     """
     tree = plan(scene, state, close, delay_s=delay_s)

@@ -6,11 +6,11 @@ the way to a body (`models.mjcf.forces`). Its length is the slip of the pitch ci
 loop and a mesh are alike in softness.
 
 A cam is a relation of two tendons: a parabola through its law about the angle of the assembled
-state. The parabola is for that angle alone; a program has to set it anew at each step. MuJoCo takes
-the softness of an equality from the inertias of both sides alike, without the slope between them,
-so the cam's side is as long as its follower moves at most: its angle in a joint of its own would
-leave a light cam hundreds of times too soft. By contact it is a chain of capsules along its facets,
-and the follower a sphere or a box, that touch nothing else.
+state. The parabola is for that angle alone; a program has to set it at each step. MuJoCo takes the
+softness of an equality from the inertias of both sides alike, without the slope between them, so
+the cam's side is as long as its follower moves at most: its angle in a joint of its own would leave
+a light cam hundreds of times too soft. By contact it is a chain of capsules along its facets, and
+the follower a sphere or a box, that touch nothing else.
 """
 
 import math

@@ -62,7 +62,7 @@ class CutScene(ABC):
         """Return the index of the body that carries a place of the link, and the place in it."""
 
     def _carry(self, link: Link, line: LinkLine, points: Sequence[dict[str, Point]]) -> None:
-        """Add the points of a link, but for its pins, to those of the bodies that carry them."""
+        """Add the points of a link, except for its pins, to those of the bodies that carry them."""
         for name, place in link.points.items():
             if name not in line.pins:
                 body, there = self._carried(line, place)

@@ -25,7 +25,7 @@ COLOURS = {"within": "green", "over": "yellow"}
 
 
 def show_advice(console: Console, advice: Advice) -> None:
-    """Print all of it, but for its provenance."""
+    """Print all of it, except for its provenance."""
     console.print(Text(title(advice), "bold"))
     console.print(_table(advice, console.width), highlight=False)
     console.print()

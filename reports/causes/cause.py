@@ -70,8 +70,8 @@ class Cause:
     """Cause of errors, or of a delay within the limits, in some channels.
 
     ``text`` names the fault, the channels and the numbers. ``correction`` is the map entry for each
-    of ``columns``, and ``of_column`` the entries where they differ by column; both are empty where
-    no map mends the log. ``left`` is the largest remaining error over the original one, in the
+    of ``columns``, and ``of_column`` the entries where they differ by column; both are empty if no
+    map corrects the log. ``left`` is the largest remaining error over the original one, in the
     channel where that ratio is largest.
     """
 

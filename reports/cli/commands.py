@@ -61,7 +61,7 @@ Plant faults in runs and check that a rule catches each.
 
 The exit code is 1 if one is not caught."""),
     "explain": Command("requests.explain:ExplainRequest", COMPARE, """
-Explain a rule, or one cell: its error by part, what helps.
+Explain a rule, or the error of one cell, and what lowers it.
 
 A rule (CC110) or a clause of the contract (EC52): its statement, its reason, its limit. A scene
 with --engine: its error by part, the limit that binds, and the settings to change."""),
@@ -125,7 +125,7 @@ With the inflection circle, Bresse's circles and the centrodes of a link."""),
 Draw a coordinate over a period with its graphical rates.
 
 An angle, a displacement or a coordinate of a point, each rate drawn with ruler and pole beside
-the exact curves. Without -o it prints the table that is drawn first, and what follows."""),
+the exact curves. Without -o it prints the tables of the drawing."""),
     "synth": Command("lectures.design.synth:SynthRequest", DESIGN, """
 Find the mechanisms that do a task: scenes, defects, figure.
 

@@ -160,7 +160,7 @@ def force_certainty(scene: Scene, acting: Forces) -> str:
     for name, slider in acting.sliders.items():
         kinds["N"].append((slider.normal, bound.sliders[name].normal))
         kinds["N m"].append((slider.moment, bound.sliders[name].moment))
-    apart = acting.has_equilibria(0) | acting.has_equilibria(2)  # which notes tell of
+    apart = acting.has_equilibria(0) | acting.has_equilibria(2)  # reported in notes
     largest_n, largest_n_m = (
         max((float(np.nanmax(np.abs(f), initial=0.0)) for f, _ in pairs), default=0.0)
         for pairs in kinds.values()

@@ -78,8 +78,8 @@ def write_names(
     taken: Sequence[Array] = (),
     larger: float = 1.0,
 ) -> None:
-    """Write the letters of points and the names of links at a sample, clear of what is drawn and
-    of places ``taken`` [m]; a metre is ``per_m`` inches, and type ``larger`` than in figures."""
+    """Write the letters of points and the names of links at a sample, clear of the drawing and of
+    places ``taken`` [m]; a metre is ``per_m`` inches, and type ``larger`` than in figures."""
     sizes = {True: larger * SIZE, False: larger * SMALL}
 
     def room(text: str, is_point: bool) -> tuple[float, float]:

@@ -29,7 +29,7 @@ class Layout:
 
     @property
     def fonts(self) -> tuple[str, ...]:
-        """Fonts in the order in which a letter is looked for: `FONT` has nearly all."""
+        """Fonts in the order in which a letter is searched: `FONT` has nearly all."""
         return tuple(dict.fromkeys((self.font, FONT)))
 
     @property

@@ -226,7 +226,7 @@ def _rule(font: str, style: Face, letters: str) -> str:
 @lru_cache(maxsize=64)
 def _letters_of(family: str, style: Face, letters: str) -> bytes:
     """Return a face cut down to some letters, as a WOFF file."""
-    logging.getLogger("fontTools.subset").setLevel(logging.ERROR)  # it tells of tables it drops
+    logging.getLogger("fontTools.subset").setLevel(logging.ERROR)  # it reports dropped tables
     path = findfont(FontProperties(family=family, style=style))
     options = Options()
     options.hinting, options.layout_features = False, []

@@ -1,1 +1,2 @@
-"""One engine in several versions: an environment for each, the same verification, what changed."""
+"""One engine in several versions: an environment for each, the same verification, and the
+changes."""

@@ -116,7 +116,7 @@ def clean_variables(variables: Mapping[str, str] = os.environ) -> dict[str, str]
 def ready(cache: Path, asked: EngineVersion, uv: str | None, run: Runner) -> Path:
     """Return the interpreter of the version's environment, which is made if it is not there yet.
 
-    An environment counts as there once it is complete: the rest of a killed install is made anew.
+    An environment counts as there once it is complete: the rest of a killed install is made again.
 
     Raises
     ------

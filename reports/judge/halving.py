@@ -19,7 +19,7 @@ ELASTIC = ("segments", "deflection")
 PLACES, FORCES = ("phase", *named("place")), named("force")
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
-"""Drive error [rad] up to which the crank is right but for rounding; long runs add the error of
+"""Drive error [rad] up to which the crank is right up to rounding; long runs add the error of
 their sums (`reports.compare.whole_errors`)."""
 BEHIND_DRIVE = 5.0
 """Ratio of the other links' rounding to that of the crank, at most."""

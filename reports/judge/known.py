@@ -91,7 +91,7 @@ class Judged(Evidence):
         if not (self.known and self.failures):
             return []
         before, was = self.known.rules, self.known.status
-        texts = [f"it ended {self.status}, and is known as {was}"] * (self.status != was)
+        texts = [f"it ended {self.status}, the known failure {was}"] * (self.status != was)
         for rule, size in self.sizes.items():
             if rule not in before:
                 texts.append(f"{rule} is not known to fail")
@@ -108,7 +108,7 @@ class Judged(Evidence):
         rules = " ".join(rule for rule in self.known.rules if rule not in mended)
         texts = [f"{rules}, known: {reason}"] * self.is_known
         texts += [f"not the known failure ({reason}): {'; '.join(other)}"] * bool(other)
-        right = f"{' '.join(mended)} known to fail, is right by now: take it out of the file"
+        right = f"{' '.join(mended)} known to fail, passed: remove from the file"
         return "; ".join(texts + [right] * bool(mended))
 
 

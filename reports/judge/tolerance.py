@@ -13,7 +13,7 @@ the reference (at least 1), ``conditioning`` its smallest sine of a transmission
 velocity (s = 1), at every step; k is the number of differentiations. ``summed`` is the rounding
 of the driver's angle by the end of the run [rad] (`reports.compare.whole_errors`), which the
 mechanism transmits like the driver's motion: the one part that grows with the number of steps.
-What single precision rounds is added before the cap (`shaken_by_rounding`).
+The rounding of single precision is added before the cap (`shaken_by_rounding`).
 
 For positions and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
 a + omega^2 r at a distance r from the centre of a body: an engine that solves for impulses
@@ -33,8 +33,8 @@ the start, in which engines open them by the arc of a step, they take a share of
 adds ``opening`` of that to the phase error.
 
 The profile of a cam by contact has facets: their sagitta and the flights over their corners are no
-engine's fault, and have no cap; its follower sinks in by what closes it in a step, or flies as far
-(`reports.compare.errors.FacetFacts`).
+engine's fault, and have no cap; its follower sinks in by the way that closes it in a step, or flies
+as far (`reports.compare.errors.FacetFacts`).
 
 Where the law of a cam jumps in acceleration or jerk, a step over the jump has some of either side:
 accelerations are off by up to that of the acceleration, and by half of what the jerk's changes in
@@ -124,8 +124,8 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
 
 
 def shaken_by_rounding(errors: Errors, rate: int, parts: int = 1) -> float:
-    """Return the error of a rate of this order by what an engine rounds more than double precision,
-    with the step divided into ``parts``: joints correct a rounded place within a step."""
+    """Return the error of a rate of this order by rounding beyond double precision, with the step
+    divided into ``parts``: joints correct a rounded place within a step."""
     scene = errors.of_scene
     shaken = (scene.floor - AT_ROUNDING) * (parts / scene.step_rad) ** rate
     if rate and shaken:

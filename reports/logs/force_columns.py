@@ -112,7 +112,8 @@ def _found(columns: Columns, scene: Scene, ignored: set[str]) -> dict[Place, tup
 def _pin(
     point: str, bodies: tuple[str, ...], read: Mapping[Place, Array], nothing: Array
 ) -> dict[str, Array]:
-    """Return the forces of a pin: of two bodies, what acts on one is the opposite on the other."""
+    """Return the forces of a pin: of two bodies, the force on one is opposite to that on the
+    other."""
 
     def component(body: str, axis: int) -> Array:
         own = read.get(("pin", point, body, axis))
@@ -147,7 +148,7 @@ UNITS: Mapping[str, Mapping[str, float]] = {
         "lbf_ft": POUND * 12 * INCH,
     },
 }
-"""Size of each unit in SI, by its spelling: in letters of any case, but for milli and mega."""
+"""Size of each unit in SI, by its spelling: in letters of any case, except milli and mega."""
 TIMES = "force_time_s"
 Place = tuple[Literal["torque", "push", "pin", "normal", "moment"], str, str, int]
 """Content of a column: kind, point or slider, body, and axis; a push drives a slider."""
@@ -206,7 +207,7 @@ def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, floa
     or mega; None for other columns."""
     for stem, kind, unit in _stems(column):
         place = places.get(stem)
-        if place is None:  # torque in capitals, point b; but not where case tells two apart
+        if place is None:  # torque in capitals, point b; but not if case separates two
             alike = {where for name, where in places.items() if name.lower() == stem.lower()}
             place = alike.pop() if len(alike) == 1 else None
         if place and (place[0] in MOMENTS) == (kind == "moment"):

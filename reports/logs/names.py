@@ -177,7 +177,7 @@ def kind_of_words(
         [word for word in words if not ((sized and word.isdigit()) or word in SIZES)],
         (set(), SPEEDS, ACCELERATIONS),
     )
-    if sized and set(words) <= SIZES:  # the unit says of what
+    if sized and set(words) <= SIZES:  # the unit names the kind
         order = {"velocity": 1, "acceleration": 2}.get(kinds.DIMENSION.get(unit, ""))
     if "point" in body_kinds and order:
         return next(k for k in every if k.is_size and k.order == order)

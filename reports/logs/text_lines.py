@@ -198,7 +198,7 @@ def header_of(text: Beginning, separator: str, wanted: Callable[[str], bool]) ->
     """Return the header of a text; a ``separator`` "" is found here. Raises UnreadableError for a
     header without names, and where no row follows."""
     lines = text.lines
-    at = _required(text, 0, "empty but for remarks")
+    at = _required(text, 0, "empty except remarks")
     if told := EXCEL.fullmatch(lines[at]):
         separator = separator or told[1]
         at = _required(text, at + 1, "no header")

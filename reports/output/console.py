@@ -117,10 +117,10 @@ def grid(
     least: Mapping[str, int] | None = None,
 ) -> Table:
     """Return a `plain_table` of rows. A head that ends in a colon is over numbers, on the right and
-    never wrapped, unless all ``wraps``, as is text below a head in ``whole``. What is too wide ends
-    in an ellipsis there and below a head in ``cut``, and goes on in the next line elsewhere.
-    ``least`` has widths of columns by head.
-    `reports.output.formats.table` writes the same heads and rows in Markdown."""
+    never wrapped, unless all ``wraps``, as is text below a head in ``whole``. A text that is too
+    wide ends in an ellipsis there and below a head in ``cut``, and continues in the next line
+    elsewhere. ``least`` has widths of columns by head. `reports.output.formats.table` writes the
+    same heads and rows in Markdown."""
     shown = plain_table(title, style, gap)
     for head in heads:
         number = head.endswith(":")

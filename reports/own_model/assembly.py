@@ -163,7 +163,7 @@ def _fits(
         placed = frames(scene, state)
         far = max(_distance(placed[name], drawn[name], scene.longest_m) for name in drawn)
         outside: Sequence[str] = ()
-        # A start that can not be assembled is refused later, with what it reaches.
+        # A start that can not be assembled is refused later, with its reach.
         with suppress(CrankcheckError):
             begun = _started(scene, request)
             if begun is not scene:

@@ -113,7 +113,7 @@ def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
 
 
 def map_lines(cause: Cause) -> str:
-    """Return the text for the map if the log means it as the cause says; "" if no map mends it."""
+    """Return the text for the map if the cause is meant in the log; "" if no map corrects it."""
     tables = []
     for column in cause.columns:
         told = {**cause.correction, **cause.of_column.get(column, {})}

@@ -33,7 +33,7 @@ def refuse_singular(scene: Scene, duration_s: float) -> None:
     """Refuse a run through a position in which the motion is not determined, change points apart.
 
     The sine of a dyad falls and rises like the letter V there, mostly between two samples: its
-    smallest values over the driver's range are looked for, and refined.
+    smallest values over the driver's range are searched, and refined.
 
     Raises CrankcheckError that names scene, driver angle and dyad, and ReachError for an angle that
     cannot be reached.

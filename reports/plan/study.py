@@ -183,7 +183,7 @@ def value(text: str) -> object:
         raise UnreadableError(f"not valid YAML: {where}{cut(why, 200)}") from None
     except yaml.YAMLError as error:
         raise UnreadableError(f"not valid YAML: {' '.join(str(error).split())[:200]}") from None
-    except (ValueError, OverflowError):  # of `chr` and `int`, by what only scans
+    except (ValueError, OverflowError):  # of `chr` and `int`, by mere scanning
         assert loader is not None
         mark = loader.get_mark()
         raise UnreadableError(

@@ -37,7 +37,7 @@ LOG_DRIVES = ("scene", "fitted", "logged")
 
 @dataclass(frozen=True)
 class LogOptions:
-    """Options of `compare` and `judge` on a log; a run knows all but ``forces`` itself."""
+    """Options of `compare` and `judge` on a log; a run knows all except ``forces`` itself."""
 
     step_s: float | None = None
     drive: str = "scene"

@@ -46,7 +46,7 @@ def write_log_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
     """Write the map of a log, or a form of it to be filled in; return a description of it.
 
     An entry that a refusal of the log names, such as a decimal comma, is made. Raises
-    CrankcheckError for a log that no map alone can mend.
+    CrankcheckError for a log that no map alone can correct.
     """
     from reports.logs.meanings import blank_map, columns_worth, map_text, understood  # pandas
 

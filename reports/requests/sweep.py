@@ -216,7 +216,7 @@ class SweepRequest:
         """Run the cells of the study that are not done yet; return the exit code, 0.
 
         A cell that failed is a row with its status and reason, and no failure of the sweep. Damage
-        to the store is mended and reported. Raises CrankcheckError for a faulty request.
+        to the store is repaired and reported. Raises CrankcheckError for a faulty request.
         """
         from reports.sweep.running import Manner, show_sweep, swept
 

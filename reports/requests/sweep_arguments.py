@@ -112,7 +112,7 @@ def overrides_of(settings: object, engines: Sequence[str]) -> chosen_study.Overr
 
 
 def command_of(choice: chosen_study.StudyChoice, folder: Path, study: object) -> list[str]:
-    """The equivalent command, which a store names to mend it."""
+    """The equivalent command, which a store names to repair it."""
     several = ",".join(f"{each:g}" for each in choice.steps_per_turn)
     options = [
         *(("--study", study) if study is not None else ()),

@@ -2,7 +2,7 @@
 
 A fit uses points that ended well, at their own and at every finer step, and are above rounding;
 from the finest on, it uses as many coarser ones as one curve goes through. A floor counts as seen
-only where it is most of the finest error, the error has all but stopped to fall, and no power of dt
+only where it is most of the finest error, the error hardly falls any more, and no power of dt
 alone goes through the same points. Five points can show parts that work against each other
 (`reports.results.floor_fit`).
 """

@@ -176,7 +176,7 @@ class FacetReport(DrivenReport):
         return self.of("place_pure")
 
     def of(self, quantity: str) -> tuple[Line, ...]:
-        """Return the lines of a quantity; what facets leave is the error of the step."""
+        """Return the lines of a quantity; the floor of facets is the error of the step."""
         wrong, right = "converges to the wrong answer: floor", "down to the error of the step,"
         return tuple(
             replace(line, words=line.words.replace(wrong, f"order {line.fit.order:.1f} {right}"))
@@ -260,7 +260,7 @@ def settings(report: Report, lines: Sequence[Line]) -> list[str]:
     told = {name: each for name, each in settings_of(report, lines).items() if each != OWN}
     words = [f"{name}: {each}" for name, each in list(told.items())[:SHOWN]]
     more = len(told) - len(words)
-    words += [f"and {count(more, 'more variant')} (crankcheck report tells)"] if more > 0 else []
+    words += [f"and {count(more, 'more variant')} (see crankcheck report)"] if more > 0 else []
     return [f"Settings, where not as shipped: {'; '.join(words)}."] if words else []
 
 

@@ -101,8 +101,8 @@ class Damage:
     """One fault of a store.
 
     ``path`` is the path of the file or folder in the store. ``lost`` is how many cells can not be
-    read for it. ``cure`` mends it: the same sweep again, waiting for the sweep that writes it now,
-    or nothing, since nothing is lost. ``aside`` says that it must be moved before the cure.
+    read for it. ``cure`` repairs it: the same sweep again, waiting for the sweep that writes it
+    now, or nothing, since nothing is lost. ``aside`` says that it must be moved before the cure.
     """
 
     path: str
@@ -127,7 +127,7 @@ def notice(
     folder: object, damage: Sequence[Damage], safe: int, runs: Sequence[object]
 ) -> list[str]:
     """Return the lines that name every damage of a store once; none where there is none. ``safe``
-    is how many cells can be read, the commands of ``runs`` mend it (see `command`)."""
+    is how many cells can be read, the commands of ``runs`` repair it (see `command`)."""
     if not damage:
         return []
     bad = [each.line for each in damage if each.cure == "sweep"]
@@ -239,6 +239,7 @@ def _of_another_format(folder: Path, found: object, runs: object) -> str:
     facts = listed[-1].get("provenance") if listed and isinstance(listed[-1], dict) else None
     writer = facts.get("crankcheck", "?") if isinstance(facts, dict) else "?"
     return in_line(
-        f"{folder}: format {found!s:.40}, written by crankcheck {writer!s:.40}; this is crankcheck "
-        f"{crankcheck_version()}, which reads format {FORMAT}; move it away, and make it anew: "
+        f"{folder}: format {found!s:.40}, written by crankcheck {writer!s:.40}; this is "
+        f"crankcheck {crankcheck_version()}, which reads format {FORMAT}; move it away, and "
+        "make it again: "
     ) + command(folder, listed)

@@ -118,7 +118,7 @@ def _harmless(folder: Path, store: ExaminedStore) -> Iterator[Damage]:
         for name, part in parts.items()
         if (number := sum(line not in asked for line in part.rows.column("line").to_pylist()))
     }
-    if asked and unasked:  # a manifest made anew may know of less than was run: they are missed
+    if asked and unasked:  # a manifest made again may know less than was run: they are missed
         yield Damage(few(list(unasked), 3), UNASKED, "nothing", lost=sum(unasked.values()))
     top = sorted(path.name for path in folder.iterdir() if path.name not in OWN)
     foreign = [name for name in top if not files.being_written(name)]
@@ -261,7 +261,7 @@ def stored_costs(folder: Path) -> dict[str, float]:
 
 
 def _rows(folder: Path, name: str, *columns: str) -> Iterator[tuple[Any, ...]]:
-    """Yield some columns of a table that was mended, row by row."""
+    """Yield some columns of a repaired table, row by row."""
     for path in files.paths_of(folder, name):
         part = pq.ParquetFile(path).read(columns, use_threads=False)
         yield from zip(*(part.column(column).to_pylist() for column in columns), strict=True)

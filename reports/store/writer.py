@@ -28,7 +28,7 @@ Row = Mapping[str, object]
 class Writer:
     """A store that is open for adding; to be used as a context, which writes the rest at its end.
 
-    Damage in it is mended at once, as ``mended`` says.
+    Damage in it is repaired at once, as ``mended`` reports.
 
     Raises CrankcheckError for a folder that is no store, is not to be written, has links for
     folders, or that another sweep writes to.
@@ -54,8 +54,8 @@ class Writer:
             raise
 
     def _open(self, later: Manifest) -> None:
-        """Mend the store, and add the coming run to the manifest, at once if it adds anything new,
-        else with the first write."""
+        """Repair the store, and add the coming run to the manifest, at once if it adds anything
+        new, else with the first write."""
         store = None if _is_new(self.folder) else examine(self.folder)
         cells = store.table("cells") if store else None
         scenes = cells.select(["scene", "scene_digest"]).to_pydict().values() if cells else ()

@@ -187,7 +187,7 @@ class Manner:
 def swept(
     study: Study, folder: Path, manner: Manner, command: Sequence[str], progress: Console
 ) -> tuple[Grid, Done]:
-    """Run the rest of the study; damage in the store is mended, and reported.
+    """Run the rest of the study; damage in the store is repaired, and reported.
 
     ``command`` is kept with the run, to be repeated. Raises CrankcheckError for faults of the
     study, or of the folder, that are known before running.

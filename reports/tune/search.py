@@ -1,7 +1,7 @@
 """The search: Optuna proposes values of the knobs, each is tried, the cheapest that reaches wins.
 
 Everything is a function of the seed and of the results of earlier trials, down to the sampler,
-which is made anew from seed and place of every trial: the same seed finds the same settings, also
+which is made again from seed and place of every trial: the same seed finds the same settings, also
 where a search is ended and resumed. Only a run that the clock ends is an exception: its trial
 fails, and its place is open to the same settings when the search is resumed.
 """

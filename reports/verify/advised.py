@@ -24,7 +24,7 @@ def advised(cell: Cell) -> Checked:
 
 
 def remedied(checked: Checked) -> Checked:
-    """Return a checked cell; where profile tuned fails by an error that settings can mend, the
+    """Return a checked cell; where profile tuned fails by an error that settings can repair, the
     remedies of its engine are tried at the same step, and the cures give their results."""
     if not _mendable(checked):
         return checked
@@ -58,7 +58,7 @@ class _Outcome:
 
 
 def _remedy(checked: Checked, choices: Sequence[Settings]) -> str:
-    """Return the result of the first choice that mends the cell with `HELPS` times less error, or
+    """Return the result of the first choice that repairs the cell with `HELPS` times less error, or
     of the best of all; the error is the one with the largest part of its limit."""
     cell, rule = checked.cell, _worst(checked)
     before = _share(checked, rule) if rule else math.inf

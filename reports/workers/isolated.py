@@ -141,7 +141,7 @@ class Isolated(Generic[Result]):
     def _lost(self, child: subprocess.Popen[bytes], late: str) -> Lost:
         """Return why a child gave no answer; ``late`` is the exceeded time limit, in words."""
         with contextlib.suppress(subprocess.TimeoutExpired):
-            child.wait(5.0)  # it is about to end by itself, which tells more than being killed
+            child.wait(5.0)  # it is about to end by itself, which shows more than being killed
         code = self._end(child)
         if late:
             return Lost("timeout", late)

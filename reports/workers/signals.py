@@ -148,8 +148,8 @@ def run_child(
 ) -> Ended:
     """Run a command and wait for it.
 
-    The child is born deaf to Ctrl-C and SIGTERM, which this process handles: it asks the child to
-    end and kills it ``patience_s`` later. A child that wants the time to unwind calls
+    The child ignores Ctrl-C and SIGTERM from its start, as this process handles them: it asks the
+    child to end and kills it ``patience_s`` later. A child that wants the time to unwind calls
     `leave_to_parent`.
     """
     child: subprocess.Popen[str] | None = None

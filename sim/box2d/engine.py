@@ -44,7 +44,7 @@ class Box2dSession(HeavyDriverSession):
         self.acts_at = 0.5 - 0.5 / substeps
         super().__init__(scene, state, settings, dt_s, driven_by, substeps)
         self.time_unit = 1.0
-        """Unit of time here over the world's: what gives its joints another rate than 60 Hz."""
+        """Unit of time here over the world's: it gives joints another rate than 60 Hz."""
         if swings := float(settings["joint_swings"]):
             self.time_unit = 2.0 ** round(math.log2(swings / (JOINT_HZ * dt_s)))
         gx, gy = scene.gravity_m_s2

@@ -10,7 +10,7 @@ SHIPPED = {
         "default: 0 leaves the springs that are its joints at 60 Hz; other numbers set another "
         "unit of time, with at most an eighth in a sub-step",
     ),
-    "motor_n_m": Setting(1e6, "largest torque [N m] or force [N] of a motor: as good as any other"),
+    "motor_n_m": Setting(1e6, "largest torque [N m] or force [N] of a motor: no other is better"),
 }
 AS_SHIPPED = Profile("as-shipped", "box2d", "Box2D's own defaults", SHIPPED)
 TUNED = Profile(

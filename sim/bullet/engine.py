@@ -85,7 +85,7 @@ class BulletSession(TreeSession):
         self.begin()
 
     def grown(self) -> Tree:
-        """Return the tree, loosened in free motion but for sliders and pins with friction."""
+        """Return the tree, loosened in free motion except sliders and pins with friction."""
         scene, tree = self.scene, super().grown()
         if self.drive != "free":
             return tree

@@ -9,7 +9,7 @@ SHIPPED = {
     "coriolis": Setting(
         "before", "as it steps: forces of rates use the joint rates of half a step before"
     ),
-    "motor_n_m": Setting(1e6, "largest torque [N m] or force [N] of a servo: as good as any other"),
+    "motor_n_m": Setting(1e6, "largest torque [N m] or force [N] of a servo: no other is better"),
 }
 AS_SHIPPED = Profile("as-shipped", "dart", "DART's own defaults", SHIPPED)
 TUNED = Profile(

@@ -1,6 +1,6 @@
 """Drake's settings: the two profiles.
 
-What makes its loops give way is not open to a user: a ball constraint has a near-rigid parameter of
+The give of its loops can not be set: a ball constraint has a near-rigid parameter of
 0.1, and a relaxation time of a step, so that a step closes half of a gap.
 """
 

@@ -143,7 +143,7 @@ class HeavyDriverSession(SteppedSession):
 
     @abstractmethod
     def look(self) -> Array:
-        """Return x, y, angle (but for whole turns), and their rates, of all bodies, (B, 6)."""
+        """Return x, y, angle (up to whole turns), and their rates, of all bodies, (B, 6)."""
 
     def numbers(self) -> Array:
         rows = self.look()

@@ -78,8 +78,8 @@ def checker(
 def as_held(
     name: str, asked: SettingValue, given: SettingValue, found: SettingValue, cause: str
 ) -> dict[str, SettingValue]:
-    """Return a setting as ``found`` in an engine: beside the one ``asked`` for where it is what was
-    ``given`` for a cause, if any."""
+    """Return a setting as ``found`` in an engine: or the one ``asked`` for if it has the value that
+    was ``given`` for a cause."""
     if cause and found == given:
         return {name: asked, f"{name}_of_{cause}": found}
     return {name: found}

@@ -1,8 +1,8 @@
-"""Sessions of engines that are stepped from Python: what is done before each step, and the log.
+"""Sessions of engines that are stepped from Python: the work before each step, and the log.
 
 An adapter says how its engine takes one step, where its bodies are, how its driver is turned and
-how a body is pushed; the drive, loads and springs of the scene, the log, and forces by what a step
-does to the momentum of each body, are here.
+how a body is pushed; the drive, loads and springs of the scene, the log, and forces by the change
+of each body's momentum in a step, are here.
 """
 
 import math

@@ -2,7 +2,7 @@
 
 A constraint takes the coordinates of two nodes. Where gears relate the angles of three bodies, a
 node without mass has two of them, given by two constraints, and a third one takes both to the third
-body; all exert couples alone. Of a cam's relation exudyn asks for the value and its derivatives at
+body; all exert couples alone. exudyn needs the value of a cam's relation and its derivatives at
 each iteration, by functions in Python.
 """
 

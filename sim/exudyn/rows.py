@@ -8,8 +8,8 @@ from sim.engine.acting import EngineBodies
 BodyRow = tuple[float, float, list[float], list[float]]
 """Mass, inertia about the centre of mass, place of that and angle, and the rates of both."""
 LineRow = tuple[str, Point, str, Point, list[float], list[float], bool]
-"""What slides and where on it, its guide and a place on the line, their directions, and whether the
-angle is kept: a block without mass is a point, which may turn."""
+"""The sliding body and the point on it, its guide and a place on the line, their directions, and
+whether the angle is kept: a block without mass is a point, which may turn."""
 
 
 def body_rows(scene: Scene, state: State) -> dict[str, BodyRow]:

@@ -57,7 +57,7 @@ def initialized(system: Any, asked: Any, settings: Settings, inertia_n: float = 
     is never reached."""
     solver = exu.MainSolverImplicitSecondOrder()
     if BY_NEED in (settings["linear_solver"], settings["residual"]):
-        with quiet([]):  # it warns of the redundancy that is looked for here
+        with quiet([]):  # it warns of the redundancy that is searched here
             solver.InitializeSolver(system, asked)
         if settings["linear_solver"] == BY_NEED:
             held_by, kinds = constraints(solver, system), exu.LinearSolverType

@@ -1,8 +1,8 @@
-"""Cams as relations while MuJoCo steps: the parabola of each, set anew for every evaluation.
+"""Cams as relations while MuJoCo steps: the parabola of each, set for every evaluation.
 
 An equality of joints is without the acceleration s'' omega^2 that the follower has at the relation
-itself: MuJoCo's aref has no term for a changing Jacobian. The follower is set ahead by what the
-constraint's spring makes that acceleration of (MuJoCo, Computation: solver parameters)::
+itself: MuJoCo's aref has no term for a changing Jacobian. The follower is set ahead by the distance
+at which the constraint's spring gives that acceleration (MuJoCo, Computation: solver parameters)::
 
     aref = -b v - k r,    k = d / (dmax tc zeta)^2        ahead = s'' omega^2 / k
 """

@@ -47,7 +47,7 @@ class SteppedModel(ABC):
         self._done = 0
         self._warnings: list[str] = []
         self._following: Callable[[], AbstractContextManager[None]] = nullcontext
-        """What is to be entered while MuJoCo works."""
+        """Context to enter while MuJoCo works."""
         self._relate: Callable[[Any, Any], None] = lambda model, data: None
         """Sets what the model holds for one state alone."""
 

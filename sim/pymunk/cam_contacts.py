@@ -21,7 +21,7 @@ def add_contact(placed: SpaceBodies, pair: CamPair, number: int) -> None:
     corners = [placed.from_centre(pair.cam, point) for point in pair.outline]
     ring = [corners[-1], *corners, *corners[:2]]
     if not placed.space.shapes:
-        # A tree of so many boxes is made anew at each step, as the cam turns.
+        # A tree of so many boxes is made again at each step, as the cam turns.
         placed.space.use_spatial_hash(CELL * pair.profile.base_m, CELLS)
     shapes: list[pymunk.Shape] = []
     for k, (here, there) in enumerate(pairwise(ring[1:-1])):

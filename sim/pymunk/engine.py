@@ -59,7 +59,7 @@ class PymunkSession:
             constraint.error_bias = bias
         if self._space.shapes:  # Chipmunk's own bias of joints and of contacts is one number
             self._space.collision_bias = bias
-            if bias == 0.0:  # all of an error is corrected, but for the slop, by default 0.1 m
+            if bias == 0.0:  # all of an error is corrected, except the slop, by default 0.1 m
                 self._space.collision_slop = 0.0
         law = scene.driver.law
         inner = scene.driver.is_inner and drive == "prescribed"

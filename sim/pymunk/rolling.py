@@ -9,10 +9,10 @@
                                  s'       sense), along u as fast as its follower; where that turns,
                                           A is on the line through O and its pivot, and u across it.
 
-Both ends are set anew before each step; the error of the place so far is that of the joint's
-distance, and so is the bend of a cam's law over the step. (Along the chord of the law, half a step
-ahead, the force would give or take energy, to first order in the step.) Chipmunk's gear joint
-couples two bodies, and so holds gears on a carrier at rest.
+Both ends are set before each step; the error of the place so far is that of the joint's distance,
+and so is the bend of a cam's law over the step. (Along the chord of the law, half a step ahead, the
+force would give or take energy, to first order in the step.) Chipmunk's gear joint couples two
+bodies, and so holds gears on a carrier at rest.
 """
 
 import math

@@ -20,7 +20,7 @@ from sim.engine.ties import Hinge, hinges, refuse_driver_angle, refuse_massless,
 from sim.rapier import DECLARATION
 from sim.rapier import settings as own
 
-rp: Any = import_module("rapier3d")  # so that types do not depend on what is installed
+rp: Any = import_module("rapier3d")  # so that types do not depend on installed packages
 VERSION = version("rapier3d")
 X, Y, TURN = rp.JointAxesMask.LIN_X, rp.JointAxesMask.LIN_Y, rp.JointAxesMask.ANG_Z
 NOTHING = rp.JointAxesMask.empty()

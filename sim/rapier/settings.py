@@ -9,7 +9,7 @@ SHIPPED = {
     "sweeps": Setting(1, "default: over all joints in a sub-step, with the errors of positions"),
     "velocity_sweeps": Setting(1, "default: after them, for velocities alone; driven motion"),
     "free_velocity_sweeps": Setting(1, "default: the same, in free motion"),
-    "motor_1_s": Setting(1e6, "gain of a motor by speed, per inertia: as good as any other"),
+    "motor_1_s": Setting(1e6, "gain of a motor by speed, per inertia: no other is better"),
 }
 AS_SHIPPED = Profile("as-shipped", "rapier", "Rapier's own defaults", SHIPPED)
 TUNED = Profile(

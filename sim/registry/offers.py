@@ -161,7 +161,7 @@ class SnippetWriter:
     def write(
         self, settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
     ) -> str:
-        """Write a snippet, with the defaults for what ``settings`` leave out."""
+        """Write a snippet, with defaults for omitted ``settings``."""
         defaults = self.shipped.values
         complete = defaults | dict(settings)
         return "\n".join(self.lines(complete, defaults, stepping, drive, head)) + "\n"

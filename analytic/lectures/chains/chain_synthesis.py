@@ -154,7 +154,7 @@ def _rows(chain: Chain, joint: Joint, draw: np.random.Generator) -> tuple[Array,
     joint's freedom, (3 n,)."""
     a, b = (slice(3 * link, 3 * link + 3) for link in joint)
     (x, y), angle = draw.uniform(-1.0, 1.0, 2), draw.uniform(0.0, np.pi)
-    places = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])  # velocity there of what moves so
+    places = np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])  # velocity there of such a motion
     turn = np.array([0.0, 0.0, 1.0])
     along = np.array([np.cos(angle), np.sin(angle)])
     across = np.array([-np.sin(angle), np.cos(angle)])

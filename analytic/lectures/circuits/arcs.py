@@ -26,7 +26,7 @@ LOOKS = 1440
 """Number of samples of an arc."""
 HALVINGS = 60
 NARROW = 0.02
-"""Width of a part over that of its arc, below which it has few samples, and is scanned anew."""
+"""Width of a part over that of its arc, below which it has few samples, and is scanned again."""
 ROUNDING = 64 * EPS
 """Allowed gap of a closed dyad, over the longest link: at a change point."""
 GAP = 1e-6

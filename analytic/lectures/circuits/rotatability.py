@@ -1,9 +1,9 @@
 """Rotatability of links against the ground and their neighbours, and swing of the others.
 
-All is over the mechanism's own branch, or over a whole circuit, which a mechanism in free motion
-goes through. Where the driver turns fully, whole turns are counted with certainty
-(`analytic.change_points.turns`); else a link goes to and fro with the driver, between its extremes
-over the branch, each followed to rounding, or it turns as the circuit closes.
+Ranges are those of the mechanism's own branch, or of a whole circuit in free motion. Where the
+driver turns fully, whole turns are counted with certainty (`analytic.change_points.turns`); else a
+link goes to and fro with the driver, between its extremes over the branch, each followed to
+rounding, or it turns as the circuit closes.
 
 Source: R. L. Norton, Design of Machinery, sections 2.12 (rotatability) and 4.10 (limit positions,
 toggle).
@@ -29,7 +29,7 @@ from models.scene.joints import block_name, joined_at
 LOOKS = 2880
 ZOOMS, FINER = 8, 33
 STILL_RAD = 1e-9
-"""Largest swing of links that keep their angle but for rounding."""
+"""Largest swing of links that keep their angle up to rounding."""
 
 
 @dataclass(frozen=True)
@@ -185,7 +185,7 @@ class _Follower:
 
 
 def plain_angles(scene: Scene, theta: Array) -> dict[str, Array]:
-    """Return the angles of all links but for whole turns, by the motion with its change points."""
+    """Return the angles of all links up to whole turns, by the motion with its change points."""
     chunk = prepared(scene).stretched(theta)
     found = {}
     for name in scene.links:

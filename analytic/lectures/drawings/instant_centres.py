@@ -40,7 +40,7 @@ Pair = frozenset[str]
 SURE = 1e-7
 """Length of the product of two lines, of unit length each, below which they are one line."""
 FAR = 1e-12
-"""Third coordinate of a centre at infinity, but for rounding."""
+"""Third coordinate of a centre at infinity, up to rounding."""
 
 
 @dataclass(frozen=True)

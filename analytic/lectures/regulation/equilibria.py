@@ -131,7 +131,7 @@ class _CircuitMachine:
             with np.errstate(all="ignore"):
                 push[at] = slope * machine.push(still, theta, still, self.wound)
                 inertia[at] = slope**2 * machine.inertia(theta)[0]
-        return push, np.maximum(inertia, np.finfo(float).tiny)  # of what has no mass
+        return push, np.maximum(inertia, np.finfo(float).tiny)  # of massless bodies
 
     def _places(self, s: Array) -> Iterator[tuple[int, Mask, Array, Array]]:
         """Yield the legs on which s (T,) lie, their samples, driver angles and d theta/ds there."""

@@ -157,7 +157,7 @@ class _Newton:
 
     def _holds(self, solution: PeriodicSolution) -> bool:
         """True if a solution belongs to a machine that goes on, at the wanted speed; the steps may
-        also end where it all but stops."""
+        also end where it nearly stops."""
         (_, *high), (_, *low) = self._extremes(solution)
         fast, slow = (math.sqrt(2.0 * energy / inertia) for energy, inertia in (high, low))
         mean = self.wanted.mean_rad_s
@@ -219,7 +219,7 @@ class _Newton:
         torques[:, :, 2] += 1.0
         over = wide * np.einsum("j,cjk->ck", WHOLE, torques)
         start = np.zeros((len(over) + 1, 3))
-        start[0, 0] = 1.0  # T at the borders, from T(0), from what is left, and from D
+        start[0, 0] = 1.0  # T at the borders, from T(0), from the residual, and from D
         for k, row in enumerate(over):
             start[k + 1] = start[k] * (1.0 + row[0])
             start[k + 1, 1:] += row[1:]

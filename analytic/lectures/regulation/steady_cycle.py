@@ -354,8 +354,8 @@ def _extremes(
     solution: PeriodicSolution, of: Callable[[Array], Array], rise: Callable[[Array], Array]
 ) -> tuple[float, float]:
     """Return the angles u at which a quantity of the cycle is largest and smallest; ``rise`` has
-    the sign of its derivative. All peaks between nodes are followed, as samples of two that are
-    nearly alike do not tell the higher one."""
+    the sign of its derivative. All peaks between nodes are followed, as samples of two similar ones
+    do not show the higher one."""
     u = np.sort(np.concatenate([solution.cells.borders, solution.cells.nodes.ravel()]))
     sizes = of(u)
     if np.ptp(sizes) <= STILL * np.abs(sizes).max():

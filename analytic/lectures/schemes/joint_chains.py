@@ -116,7 +116,7 @@ _KINDS: Mapping[str, Callable[[SchemeJoint], list[Array]]] = {
 
 def replaced(scheme: Scheme) -> Scheme:
     """Return the scheme with every contact and every pair of teeth replaced by a link or a block.
-    It has the count, the velocities and (but for teeth on centres that move against each other) the
+    It has the count, the velocities and (except teeth on centres that move against each other) the
     accelerations of the given one, in this position. Raises StructureError for a spatial scheme: a
     link between centres of curvature replaces a contact in the plane only."""
     if scheme.space != PLANAR:

@@ -8,10 +8,10 @@ position f - rank of the equations' derivative.
 That rank, which compares turns with displacements, is taken in the drawing's own frame: it is that
 on paper, whatever the unit and the place of the drawing.
 
-The rank at the drawn position alone may mislead both ways: links in a line seem to have a motion
-more, and a stretched row of bars seems to give way. So the scheme is moved: a step along a motion
+The rank at the drawn position alone may mislead both ways: links in a line seem to have one more
+motion, and a stretched row of bars seems to give way. So the scheme is moved: a step along a motion
 that the equations leave, then back to closed loops (Levenberg-Marquardt). A finite motion survives
-that; one of first order only gives back. The steps start next to the drawn position, in random
+that; one of first order alone vanishes. The steps start next to the drawn position, in random
 directions, so that the result holds in general. Source for the terms: K. H. Hunt, Kinematic
 Geometry of Mechanisms, chapter 2 (transitory and full-cycle mobility); the steps are ours.
 """
@@ -263,7 +263,7 @@ def _left(loops: Loops, moves: Array, draw: np.random.Generator) -> Array:
         direction = moves @ draw.standard_normal(moves.shape[1])
         direction *= share * AWAY / max(float(np.abs(direction).max()), 1e-300)
         there = settled(loops, direction)
-        # A motion that gives back comes to rest at the drawn position, or slowly towards it.
+        # A motion of first order alone ends at the drawn position, or slowly approaches it.
         if there is not None and 0.05 < np.abs(there).max() / (share * AWAY) < 3.0:
             return there
     return stay
@@ -275,7 +275,7 @@ def _finite(loops: Loops, at: Array, moves: Array, draw: np.random.Generator) ->
     if count == 0 or not loops.closing:
         return count
     if loops.closure(at)[1].shape[0] + count == loops.freedoms:
-        return count  # independent equations: what they leave can go on (implicit functions)
+        return count  # independent equations: the remaining motions continue (implicit functions)
     turned, _ = np.linalg.qr(draw.standard_normal((count, count)))
     steps = [settled(loops, at + LOOK * step) for step in (moves @ turned).T]
     way = np.array([np.zeros_like(at) if step is None else step - at for step in steps]) / LOOK

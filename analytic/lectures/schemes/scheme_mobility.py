@@ -256,7 +256,7 @@ class SchemeMobility:
 
     @property
     def yielding(self) -> int:
-        """Number of motions of first order that give back: the scheme shakes, and does not move."""
+        """Number of motions of first order alone: the scheme shakes, and does not move."""
         return int(self.near.moves.shape[1]) - self.near.finite
 
     @property

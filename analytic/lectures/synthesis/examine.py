@@ -1,9 +1,9 @@
 """Defects and merits of a proposed mechanism: by the reference, not by the equations of its
 construction.
 
-A mechanism that fits all positions may still not do the task: where they lie on two circuits it has
-to be taken apart between them, where they lie on two branches its driver can not lead from one to
-the other, and in another order they are another task.
+A mechanism that fits all positions may still not do the task: if they lie on two circuits it has to
+be taken apart between them, if they lie on two branches its driver can not lead from one to the
+other, and in another order they are another task.
 
 Source: lecture "Tong hop co cau" (synthesis), branch and order defect; T. R. Chase and J. A. Mirth,
 Journal of Mechanical Design 115 (1993), circuits and branches.
@@ -172,7 +172,7 @@ def _in_line(
             scene, angles, np.ones(1), np.zeros(1), links=(), points=(), sliders=(), bound=False
         )
     except ReachError:
-        return ""  # a defect of another kind, which is told where it is looked for
+        return ""  # a defect of another kind, which its own search reports
     for key, sine in motion.conditioning.items():
         near = np.flatnonzero(np.abs(np.broadcast_to(sine, angles.shape)) < IN_LINE)
         if near.size:

@@ -37,7 +37,7 @@ Solve = Callable[[TaskTable], list[Examined]]
 
 
 Near = tuple[float, str, list[Examined] | None]
-"""Size of what is given up, its text, and the mechanisms; None for a task that is refused."""
+"""Size of the change, its text, and the mechanisms; None for a task that is refused."""
 
 
 def nearest(task: TaskTable, solve: Solve) -> tuple[str, list[Examined]]:

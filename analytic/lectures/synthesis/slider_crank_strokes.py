@@ -36,7 +36,7 @@ RODS = (2.0, 3.0, 4.0, 5.0)
 """Default rods, over half the stroke."""
 SQUARE = math.radians(0.1)
 """Distance of a from 90 deg, below which the rod of every O2 is square to the slider's line to
-within this, at the inner end: there the crank is all but locked."""
+within this, at the inner end: there the crank is nearly locked."""
 PLACES = 12
 """Number of default places of O2 on the circle of a time ratio."""
 

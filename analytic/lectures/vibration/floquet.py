@@ -225,7 +225,7 @@ def _pairs(multipliers: Array) -> list[int]:
 
 
 def _unwrapped(multiplier: complex, near: float) -> float:
-    """Return the vibrations in a period: its angle but for whole turns and its sign."""
+    """Return the vibrations in a period: its angle up to whole turns and its sign."""
     part = abs(np.angle(multiplier)) / math.tau
     whole = math.floor(near)
     every = [n + sign * part for n in (whole - 1, whole, whole + 1, whole + 2) for sign in (1, -1)]

@@ -116,7 +116,7 @@ def apart(one: periodic.LinearForm, other: periodic.LinearForm) -> float:
 
 
 PLACES = 41
-"""Number of places along a link where the largest deflection is looked for."""
+"""Number of places along a link where the largest deflection is searched."""
 
 
 @dataclass(frozen=True)

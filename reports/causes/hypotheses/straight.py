@@ -135,7 +135,7 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, line: StraightLineFault) -> Accoun
 
 
 def _correction(line: StraightLineFault, channel: Channel, zero: float) -> dict[str, object]:
-    """Return the mending map entries: a reading in SI is ``sign * (number + offset) * unit``."""
+    """Return the correcting map entries: a reading in SI is ``sign * (number + offset) * unit``."""
     if line.name == "scaled":
         return {}
     unit = line.unit or channel.unit

@@ -164,7 +164,7 @@ def _felt(subject: Subject, one: str, other: str) -> Iterator[str]:
 
 
 def _same(held: object, asked: SettingValue, rounding: float) -> bool:
-    """True if a setting is the requested one, but for the loss of a number on its way."""
+    """True if a setting is the requested one, up to the loss of a number on its way."""
     if isinstance(asked, float) and isinstance(held, float):
         return math.isclose(held, asked, rel_tol=rounding)
     return held == asked

@@ -188,7 +188,7 @@ def _unfelt(subject: Subject, plain: Forces, changed: Scene, share: float) -> It
         yield f"the change of the {worst} is wrong by {off[worst]:.2g} of the largest"
         return
     if share < 1.0:
-        return  # it jumps, which has no time to tell
+        return  # it jumps, which shows no time
     late = late_by(more, wanted, subject.dt_s(STEPS))
     worst = max(late, key=lambda name: abs(late[name]), default="")
     if worst and not abs(late[worst]) <= LATE:

@@ -155,7 +155,7 @@ def _drift(subject: Subject, steps: int) -> float:
 )
 def _by_speed(subject: Subject) -> Iterator[str]:
     if not subject.engine.applies_loads:
-        raise NotTriedError("applies_loads says that it takes no loads")
+        raise NotTriedError("applies_loads is False: it takes no loads")
     inertia = MASS_KG * LENGTH_M**2 / 3.0
     motor = Load("motor", "rod", None, _by_rate(inertia), "omega")
     turning = _settling(rod_scene(), motor)

@@ -117,7 +117,7 @@ FORCES = tuple(name for name in named("force") if name != "moment")
 JUMPING = ("acceleration", *named("force"))
 """A block that is pinned at its point bears no moment, in an engine as in the reference."""
 WHOLE = ("total", "geometric")
-"""Errors of the run, but for its start and change points, where an engine may have hardly moved."""
+"""Errors of the run, except its start and change points, where an engine may have hardly moved."""
 ROUNDING = sys.float_info.epsilon
 """A rate that is off by at most this share of its scale is the next number or the same."""
 

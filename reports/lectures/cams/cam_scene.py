@@ -1,4 +1,5 @@
-"""The scene of a cam: the cam, its follower on a guide or a pivot, and what closes it."""
+"""The scene of a cam: the cam, its follower on a guide or a pivot, and its closing spring or
+weight."""
 
 import math
 

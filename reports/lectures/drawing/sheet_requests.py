@@ -88,7 +88,7 @@ class CentresRequest:
         check_file(self.output, "-o", ENDINGS, inputs=[find_scene(self.scene)])
         scene = load_scene(self.scene)
         refuse_other_than_cranked(scene, "a sheet of instant centres", analyse(scene))
-        # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
+        # Centres do not depend on the speed; circles need the acceleration at a constant one.
         angle = angle_at(self.at_deg) if scene.is_free else driver_at(scene, self.at_deg)[0]
         drawn = draw_polygons(scene, DriverState(angle, sense_of_law(scene)))
         sheet = centres_of(drawn, self.link, paper)

@@ -72,7 +72,7 @@ def held(matrix: Matrix | None, engine: str) -> Score:
 
 
 def notes(report: PageReport) -> list[str]:
-    """Return a line on each group of columns: what its numbers are."""
+    """Return a line on the numbers of each group of columns."""
     span = " to ".join(dict.fromkeys(map(duration, near_ms(report)))) or "none was run"
     return [
         "Numbers are of profile tuned, the median over the scenes unless stated otherwise; the "

@@ -95,7 +95,7 @@ def _geometry(whole: FreeBeside) -> Array:
         beside = whole.at_crank
     except CrankcheckError:
         return none
-    # Not those of `whole`: they ask for the truth at the same time, which is followed less far.
+    # Not those of `whole`: they need the reference at the same time, which is followed less far.
     places = tracks(whole.scene, whole.run, beside, (GEOMETRY.name,))
     return widest([_pure(track) for track in places], none)
 

@@ -1,5 +1,5 @@
-"""The bodies that move with the driven joint in loops: what they are held against, and what only
-hangs on them.
+"""The bodies that move with the driven joint in loops, their base, and the bodies that only hang on
+them.
 
 A body is in a loop with the driven joint if no single body, taken away, parts it from the joint's
 two bodies (Menger's theorem). A loop that meets the ground nowhere moves against its base, the body
@@ -90,7 +90,7 @@ def loop_of(model: Any, joint: str, qpos: Array) -> DrivenLoop:
     ids = _block((WORLD, crank), ties) - {WORLD}
     hung = _reached({crank}, ties, {WORLD}) - ids
     ends = [_ends(grounded, each) for each in closures]
-    # Where the driven joint is in no loop at all, the reason is found in what hangs on it.
+    # If the driven joint is in no loop, the reason is in the bodies that hang on it.
     looped = len(ids) > 1 or any(on <= {WORLD, crank} for on in ends)
     if not (looped and _is_loose(grounded, data, hung, closures)):
         ids, hung = ids | hung, set()

@@ -89,7 +89,7 @@ CORNERS = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T
 SIDES = np.exp(1j * np.linspace(-np.pi, np.pi, 361))
 """Directions in which the reach of a body is taken."""
 Places = dict[str, list[complex]]
-"""Places on a body by the name of what stands there."""
+"""Places on a body by the name of the element there."""
 
 
 def far_pins(linkage: Linkage) -> Iterator[str]:

@@ -100,7 +100,7 @@ def test_versions_that_agree_are_said_to_and_cells_that_come_within_tolerance_co
     assert better == ["2 is within tolerance where 1 was out of it: 2 scenes as shipped"]
     assert worse == ["2 is out of tolerance where 1 was within it: 2 scenes as shipped"]
     known = [cell(name, verdict="known", angle=0.95) for name in ("fourbar", "shaper")]
-    calm = ["2 differs from 1 in no error by more than a tenth"]
+    calm = ["no error of 2 differs from that of 1 by more than a tenth"]
     assert told(known, within) == told(within, known) == calm
     _, (row,) = overview([result("1", known[0], within[1])])
     assert row[:2] == ["1", "1 of 2, 1 known"]

@@ -87,7 +87,7 @@ def test_what_can_be_read_is_reported_and_the_rest_is_named(
     named = [line.partition(": ")[0] for line in told.splitlines()]
     assert len(named) == len(set(named)), "each damaged thing is named once"
     assert ("to repair it: crankcheck sweep" in told) == (case.cure == "sweep")
-    assert ("make it anew: crankcheck sweep" in told) == (case.cure == "anew")
+    assert ("make it again: crankcheck sweep" in told) == (case.cure == "anew")
     if not case.cells:
         return
     assert f"{case.cells} cells can be read" in told
@@ -143,7 +143,7 @@ def test_what_is_not_damaged_or_of_another_format_is_left_alone(
     if CASES[name].cure == "nothing":
         assert swept(store) == 0
     else:
-        anew = "which reads format 2; move it away, and make it anew: crankcheck sweep"
+        anew = "which reads format 2; move it away, and make it again: crankcheck sweep"
         assert re.fullmatch(f".*{anew}.*", refusal(swept, store))  # one line
     assert files(store) == before
     assert capsys.readouterr().err == ""

@@ -237,7 +237,7 @@ def _starts(task: PathTask, count: int, seed: int) -> Iterator[Fitted]:
 
 
 def _strayed(entry: Fitted, path: UnitPath, rng: np.random.Generator) -> Fitted:
-    """Return a start beside an entry: another shape, put over the points anew."""
+    """Return a start beside an entry: another shape, put over the points again."""
     low, high = np.array(BOUNDS[entry.family]).T
     off = STRAYED * (high - low) * rng.uniform(-1.0, 1.0, 3)
     x = np.clip(entry.x + off, low, high)

@@ -91,7 +91,7 @@ of any line close by, and of a leading line."""
 COVER_COST, CROSS_COST = 1e4, 30.0
 """Costs of covering another text or leaving the box, and of covering a leading line."""
 LOOKED_AT = 600
-"""Number of places examined: those that are best but for other texts."""
+"""Number of places examined: those that are best except other texts."""
 LEADING = np.linspace(0.0, 1.0, 12)
 """Shares of a leading line at which it is examined."""
 GROUND_MM = 0.2

@@ -134,7 +134,7 @@ def continued(name: str, head: str, within: str) -> Column:
     """The angle of a column ``within`` a turn, continuous from row to row."""
     step = f"([{within}]-[{name}-1])"
     on = f"[{within}]-2*PI()*ROUND({step}/(2*PI()),0)"
-    formula = f"IF(ISNUMBER([{name}-1]),{on},[{within}])"  # begins anew after a gap
+    formula = f"IF(ISNUMBER([{name}-1]),{on},[{within}])"  # starts again after a gap
     return Column(name, head, formula, first=f"[{within}]")
 
 
