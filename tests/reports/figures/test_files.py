@@ -23,10 +23,11 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
 from reports.figures.drawing import marks
-from reports.figures.force_figures import FORCE_FIGURES, force_turn
+from reports.figures.force_figures import FORCE_FIGURES
+from reports.figures.force_turn import force_turn
 from reports.figures.free_figures import _over_one_turn
 from reports.figures.free_runs import free_runs
-from reports.figures.layout import DEFAULT, LEAST_MM
+from reports.figures.layout import LEAST_MM, Layout
 from reports.figures.style import cut, styled, width_in
 from reports.requests.figures import FIGURES, FiguresRequest
 from reports.requests.solve import SolveRequest
@@ -143,7 +144,7 @@ def test_what_was_run_and_what_failed_stand_under_a_result(drawn: Path) -> None:
 def test_scene_and_only_choose_and_a_pdf_brings_its_fonts(chosen: tuple[Path, str]) -> None:
     folder, said = chosen
     assert {p.name for p in folder.iterdir()} == {
-        f"mechanism-slotted-lever.{k}" for k in DEFAULT.formats
+        f"mechanism-slotted-lever.{k}" for k in Layout().formats
     }
     assert "1 figure, each as .svg and .pdf" in said
     raw = (folder / "mechanism-slotted-lever.pdf").read_bytes()
