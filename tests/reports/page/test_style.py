@@ -5,9 +5,9 @@ import re
 
 import numpy as np
 
+from reports.output.palette import COLOURS
 from reports.page.build import HERE
 from reports.page.sections.hard import SHADES
-from reports.results.lines import COLOURS
 from reports.stability.matrix import OUTCOMES
 
 CSS, MAP = ((HERE / "assets" / f"{n}.css").read_text(encoding="utf-8") for n in ("page", "map"))
