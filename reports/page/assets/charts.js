@@ -69,6 +69,31 @@ crankcheck.chart = (() => {
     };
   }
 
+  /** Labels beside curves that lie on each other, within a line's width: how many lie there. */
+  function coinciding(data, { xaxis, yaxis }) {
+    const level = (axis, value) => (value === null ? NaN : axis.type === "log" ? Math.log10(value) : Number(value));
+    const curves = data.filter(({ visible = true, hoverinfo }) => visible && hoverinfo !== "skip").map(({ name, x, y }) => ({
+      name, points: Array.from(x, (each, i) => [level(xaxis, each), level(yaxis, y[i])]).filter((point) => point.every(Number.isFinite)),
+    })).filter(({ points }) => points.length > 1);
+    const every = curves.flatMap(({ points }) => points);
+    const width = [0, 1].map((k) => {
+      const [least, most] = every.reduce(([a, b], point) => [Math.min(a, point[k]), Math.max(b, point[k])], [Infinity, -Infinity]);
+      return (most - least) / 200;
+    });
+    const near = (p, q) => width.every((each, k) => Math.abs(p[k] - q[k]) <= each);
+    const liesOn = (a, b) => a.every(a.length === b.length ? (p, i) => near(p, b[i]) : (p) => b.some((q) => near(p, q)));
+    const groups = [];
+    for (const curve of curves.toSorted((a, b) => b.points.length - a.points.length)) {
+      const group = groups.find(([first]) => liesOn(curve.points, first.points));
+      if (group) group.push(curve);
+      else groups.push([curve]);
+    }
+    const counted = groups.map(([{ points }, ...others]) => ({ at: points[Math.floor(0.6 * points.length)], number: 1 + others.length }));
+    return counted.filter(({ number }) => number > 1).map(({ at: [x, y], number }) => ({
+      x, y, text: `${number} curves coincide`, showarrow: false, yshift: 14, font: { size: 12 }, bgcolor: colour("paper"),
+    }));
+  }
+
   const config = {
     responsive: true, displaylogo: false, showSendToCloud: false, displayModeBar: finger ? false : "hover",
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"], scrollZoom: false,
@@ -84,7 +109,7 @@ crankcheck.chart = (() => {
     const draw = () => {
       if (!seen) return;
       const { data, layout: own } = figure();
-      Plotly.react(element, data, layout(own), config).then(after);
+      Plotly.react(element, data, layout({ annotations: coinciding(data, own), ...own }), config).then(after);
     };
     const show = () => loaded.then(() => {
       seen = true;

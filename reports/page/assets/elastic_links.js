@@ -74,4 +74,8 @@
   course.addEventListener("change", curves);
   error.addEventListener("change", errors);
   choose();
+  crankcheck.cellsLead("elastic", own, (line) => {
+    scene.value = line.scene;
+    choose();
+  });
 })();

@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 
 from reports.output.numbers import duration
+from reports.page.sections.cell import known
 from reports.page.sections.errors import drawn
-from reports.page.sections.motion import FreeCourses, sizes_of
 from reports.page.sections.section import BUDGET, Section, WaySection, steps_held
 from reports.protocol.length import clock_of
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation, short_target
+from reports.ways.free.courses import FreeCourses, sizes_of
 
 KIND = "free"
 SHOWN = (
@@ -18,8 +19,8 @@ SHOWN = (
 )
 """The columns of the table."""
 SCRIPTS = (
-    *("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js"),
-    "copying.js",
+    *("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "cell.js"),
+    *("free.js", "copying.js"),
 )
 FREE_DRIVE = ", free drive"
 """Words of a variant that are left out here, where all motion is free."""
@@ -69,6 +70,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
                 for name in names
             ],
             **curves,
+            **known(report, lines),
             "judged": sorted({report.look(x).number for x in lines if x.cells["gated"].all()}),
         },
         scripts=SCRIPTS,
