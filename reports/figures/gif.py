@@ -17,12 +17,19 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from models.array import Array
+from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import GROUND, Scene
 from models.scene.driver import driver_stands
 from reports.drawing import shape
 from reports.drawing.force_arrows import ForceArrows, force_arrows
-from reports.drawing.moving import Magnified, magnification
+from reports.drawing.moving import (
+    FARTHEST,
+    Magnified,
+    largest_displacement,
+    magnification,
+    rounded,
+)
 from reports.drawing.pair_curves import blocks_of, pair_curves
 from reports.figures.style import POINTS, SIZE, SMALL, Look, width_in
 from reports.output.numbers import readable
@@ -99,7 +106,8 @@ class DrawnRun:
 
     def beside(self, scene: Scene, positions: int, most_s: float) -> Magnified:
         """Return the run and the reference at some of its samples: those of its second turn, where
-        it has two, and of free motion from its start on."""
+        it has two, and of free motion from its start on. Raises CrankcheckError for a factor that
+        draws the run far out of the picture."""
         time_s, lasts = self.motion.time_s, min(scene.driver.law.period_s, most_s)
         start = 0.0 if scene.is_free or time_s[-1] < 1.99 * lasts else scene.driver.law.period_s
         ends = np.searchsorted(time_s, [start - 1e-9 * lasts, start + (1.0 + 1e-9) * lasts])
@@ -108,6 +116,12 @@ class DrawnRun:
         run = self.motion.each_series(lambda series: series[samples])
         size = shape.size_of_motion(scene, exact)
         factor = magnification(run, exact, {}, size) if self.factor is None else self.factor
+        off = largest_displacement(run, exact, {})
+        if factor > 1.0 and factor * off > (reach := FARTHEST * scene.longest_m):
+            raise CrankcheckError(
+                f"--magnify: found {factor:g}, which draws the run up to {factor * off:.3g} m off; "
+                f"give {max(1.0, rounded(reach / off)):g} at most, or auto"
+            )
         return Magnified(scene, run, exact, {}, factor)
 
 

@@ -36,6 +36,7 @@ crankcheck.ticks = (values) => {
 };
 
 crankcheck.chart = (() => {
+  const PAPER = 680; // width of a diagram on a printed page
   const { colour } = crankcheck;
   // Plotly stands after this script, so that the page is laid out before its megabytes are read.
   const loaded = new Promise((resolve) => {
@@ -51,7 +52,16 @@ crankcheck.chart = (() => {
     };
   }
 
-  function layout(own) {
+  /** The least and the largest of some numbers. */
+  const span = (numbers) => numbers.reduce(([least, most], each) => [Math.min(least, each), Math.max(most, each)], [Infinity, -Infinity]);
+
+  /** Ticks of an axis of powers of ten, `which` of x and y, where its curves span too few of these. */
+  function shortTicks(which, { dtick }, data) {
+    const [least, most] = span(data.flatMap(({ visible = true, [which]: each }) => (visible ? Array.from(each) : [])).filter((each) => each > 0));
+    return dtick && most < 30 * least ? { dtick: undefined, ...(most > 3 * least ? crankcheck.ticks([least, most]) : {}) } : {};
+  }
+
+  function layout(own, data) {
     return {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", showlegend: false, hovermode: "closest",
       font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
@@ -64,7 +74,7 @@ crankcheck.chart = (() => {
       dragmode: finger ? false : "zoom", // a finger scrolls the page
       ...own,
       ...Object.fromEntries(Object.entries(own).filter(([name]) => /^[xy]axis/.test(name)).map(([name, each]) => [
-        name, axis(name.startsWith("y") ? { ...each, title: { standoff: 6, ...each.title } } : each),
+        name, axis({ ...each, ...(name.startsWith("y") ? { title: { standoff: 6, ...each.title } } : {}), ...shortTicks(name[0], each, data) }),
       ])),
     };
   }
@@ -76,10 +86,7 @@ crankcheck.chart = (() => {
       name, points: Array.from(x, (each, i) => [level(xaxis, each), level(yaxis, y[i])]).filter((point) => point.every(Number.isFinite)),
     })).filter(({ points }) => points.length > 1);
     const every = curves.flatMap(({ points }) => points);
-    const width = [0, 1].map((k) => {
-      const [least, most] = every.reduce(([a, b], point) => [Math.min(a, point[k]), Math.max(b, point[k])], [Infinity, -Infinity]);
-      return (most - least) / 200;
-    });
+    const width = [0, 1].map((k) => span(every.map((point) => point[k])).reduce((least, most) => (most - least) / 200));
     const near = (p, q) => width.every((each, k) => Math.abs(p[k] - q[k]) <= each);
     const liesOn = (a, b) => a.every(a.length === b.length ? (p, i) => near(p, b[i]) : (p) => b.some((q) => near(p, q)));
     const groups = [];
@@ -106,10 +113,11 @@ crankcheck.chart = (() => {
    */
   return (element, figure, after = () => {}) => {
     let seen = false;
+    let width; // on paper; else that of its place
     const draw = () => {
       if (!seen) return;
       const { data, layout: own } = figure();
-      Plotly.react(element, data, layout({ annotations: coinciding(data, own), ...own }), config).then(after);
+      Plotly.react(element, data, layout({ annotations: coinciding(data, own), width, ...own }, data), config).then(after);
     };
     const show = () => loaded.then(() => {
       seen = true;
@@ -120,7 +128,14 @@ crankcheck.chart = (() => {
       observer.disconnect();
       show();
     }, { rootMargin: "300px" }).observe(element);
-    addEventListener("beforeprint", show);
+    addEventListener("beforeprint", () => {
+      width = PAPER;
+      show();
+    });
+    addEventListener("afterprint", () => {
+      width = undefined;
+      draw();
+    });
     crankcheck.onTheme(draw);
     return draw;
   };

@@ -62,20 +62,21 @@ def cell_facts(line: Line, row: Mapping[Hashable, Any]) -> dict[str, object]:
         "verdict": row["verdict"] if row["status"] == "ok" else f"{row['status']}: {row['reason']}",
         "failed": str(row.get("failed_rules") or "").replace(",", " ").split(),
         "errors": [
-            [*_quantity(name), float(f"{row[name]:.3g}"), _finite(limit)]
+            [*of, float(f"{row[name]:.3g}"), _finite(limit)]
             for name, limit in limits.items()
-            if math.isfinite(row[name]) and name != "place_pure"  # the worst of angle and place
+            if (of := _quantity(name)) and math.isfinite(row[name])
         ],
     }
 
 
-def _quantity(column: str) -> tuple[str, str]:
-    """Return name and unit of a column of pure errors."""
-    if column in DIAGRAMS:
+def _quantity(column: str) -> tuple[str, str] | None:
+    """Return name and unit of a column of pure errors; None for one that is no error of a quantity,
+    as the place, which is the worst of several."""
+    if column != "place_pure" and column in DIAGRAMS:
         return DIAGRAMS[column]
     words = column.removesuffix("_pure").replace("_differenced", ", from logged places")
     entry = QUANTITIES.get(words.partition(",")[0])
-    return words, SHARES.get(entry.share, entry.share) if entry else ""
+    return (words, SHARES.get(entry.share, entry.share)) if entry else None
 
 
 def _finite(limit: float) -> float | None:

@@ -54,7 +54,7 @@ def build(report: Report) -> Section | None:
             "scenes": names,
             "errors": names_of_errors,
             "rows": [row for line in own for row in _rows(report, line)],
-            "costs": [cost_row(one, own[0].period_s) for one in bent],
+            "costs": [cost_row(report, one, own[0].period_s) for one in bent],
         },
         embedded={
             "courses": [each for line in own for each in _courses(report, line)],

@@ -60,7 +60,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
                 for name in names
             ],
             "errors": names_of_errors,
-            "costs": [cost_row(one) for one in costs],
+            "costs": [cost_row(report, one) for one in costs],
             "thinned": held < max(len(line.cells) for line in lines),
             "held": held,
         },
@@ -92,7 +92,7 @@ def _rows(report: Report, line: Line) -> list[dict[str, object]]:
     ]
 
 
-def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
+def cost_row(report: Report, one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
     """The cheapest settings of an engine that keep a target on every scene, as a row, with their
     text to be copied for a driver of that period."""
     best = one.best
@@ -101,7 +101,7 @@ def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
         "called": best.variant,
         "snippet": one.snippet(period_s),
         "target": short_target(one.target),
-        "name": f"{best.engine} {best.variant}",
+        "look": report.looks[best.engine, best.variant, best.drive],
         "reason": one.reason.replace(FREE_DRIVE, ""),
         "caution": one.caution.replace(FREE_DRIVE, ""),
         "dt_s": 1.0 / best.steps_per_turn,

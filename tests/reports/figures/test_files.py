@@ -22,6 +22,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
+from reports.figures.coinciding import count_coinciding
 from reports.figures.drawing import marks
 from reports.figures.force_figures import FORCE_FIGURES
 from reports.figures.force_turn import force_turn
@@ -47,7 +48,7 @@ ALL = EACH | {"work-precision", "convergence", "profile"}
 LABELS = {
     "work-precision": ("time per simulated turn [s]",),
     "convergence": ("steps per turn", "largest error: angle [rad], place / L [-]"),
-    "convergence-": ("time step [s]", ": order 1.0"),
+    "convergence-": ("time step [s]", ": order 1.0", "a floor below"),
     "split": ("angle of crank [deg]", "[10⁻³ rad]", "drive", "closure", "floor", "discretisation"),
     "mechanism": ("x [m]", "y [m]", "A", "crank"),
     "profile": ("time over that of the fastest [-]", "share of the scenes [%]", "error up to 10⁻²"),
@@ -108,6 +109,16 @@ def texts(svg: bytes) -> str:
 
 def flat(path: Path) -> str:
     return texts(path.read_bytes()).replace("\n", " ")
+
+
+def test_curves_within_a_line_s_width_are_counted_where_they_lie() -> None:
+    axes = Figure().add_subplot()
+    x = np.linspace(0.0, 1.0, 11)
+    curves = [axes.plot(x, x + off)[0] for off in (0.0, 1e-3, 2e-3, 0.5)]
+    curves += axes.plot(x[2:5], x[2:5] + 0.5)
+    count_coinciding(axes, curves)
+    assert [text.get_text() for text in axes.texts] == ["3 curves coincide", "2 curves coincide"]
+    assert axes.texts[1].xy == (x[6], x[6] + 0.5)
 
 
 def test_there_is_an_svg_of_each_figure_that_a_store_has(drawn: Path, drawn_free: Path) -> None:
