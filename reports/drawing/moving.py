@@ -237,14 +237,17 @@ def magnification(
     elastic: Motion, rigid: Motion, bent: Mapping[str, Array], size_m: float
 ) -> float:
     """Return the factor, 1, 2 or 5 times a power of ten and at least 1, to see displacements."""
+    largest = largest_displacement(elastic, rigid, bent)
+    return max(1.0, rounded(SHOWN * size_m / largest)) if largest > 0.0 else 1.0
+
+
+def largest_displacement(elastic: Motion, rigid: Motion, bent: Mapping[str, Array]) -> float:
+    """Return the largest displacement of a point, or deflection of a link [m]."""
     moved = [
         np.hypot(*(point.position - rigid.points[name].position).T).max()
         for name, point in elastic.points.items()
     ]
-    largest = float(max([*moved, *(np.abs(each).max() for each in bent.values())]))
-    if not largest > 0.0:
-        return 1.0
-    return max(1.0, rounded(SHOWN * size_m / largest))
+    return float(max([*moved, *(np.abs(each).max() for each in bent.values())]))
 
 
 def rounded(value: float) -> float:

@@ -267,7 +267,7 @@ def names(
     labels = [Label(n, size(n, True), spot.place[None], spot.radius) for n, spot in spots.items()]
     labels += [Label(name, size(name, False), _middle(bar), BAR) for name, bar in bars.items()]
     drawn = [p.position for name, p in path.points.items() if name not in scene.ground]
-    drawn += [rail(slider, path, at, sheet.spare_m) for slider in scene.sliders.values()]
+    drawn += [rail(slider, path, path, at, sheet.spare_m) for slider in scene.sliders.values()]
     drawn += [curve for own in pair_curves(scene) for curve in own.at(path, at)]
     lines = sheet.place(np.concatenate(drawn))
     heavy = [_obstacles(scene, spots, bars)]
@@ -306,9 +306,17 @@ def _sampled(a: Array, b: Array) -> Array:
     return np.linspace(a, b, max(int(np.linalg.norm(b - a) / BAR), 1) + 1)
 
 
-def rail(slider: Slider, path: Motion, at: int, spare_m: float) -> Array:
-    """Return points along the guide of a slider, a little farther than it runs [m], (n, 2)."""
-    travel = path.sliders[slider.name].displacement
-    along = np.linspace(travel.min() - spare_m, travel.max() + spare_m, RAIL) - travel[at]
-    direction = guide_direction(slider, path, at)
-    return np.asarray(path.points[slider.point].position[at] + np.outer(along, direction))
+def rail(slider: Slider, path: Motion, motion: Motion, at: int, spare_m: float) -> Array:
+    """Return points along the guide of a slider at a sample of a motion, a little farther than it
+    runs on a path [m], (n, 2)."""
+    travel, there = path.sliders[slider.name].displacement, motion.sliders[slider.name].displacement
+    along = np.linspace(travel.min() - spare_m, travel.max() + spare_m, RAIL) - there[at]
+    direction = guide_direction(slider, motion, at)
+    return np.asarray(motion.points[slider.point].position[at] + np.outer(along, direction))
+
+
+def block_at(slider: Slider, motion: Motion, at: int, half: Array) -> Array:
+    """Return the corners of a block at a sample [m], (4, 2), ``half`` as long and wide, (2,)."""
+    c, s = guide_direction(slider, motion, at)
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half
+    return np.asarray(motion.points[slider.point].position[at] + corners @ [[c, s], [-s, c]])

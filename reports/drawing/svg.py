@@ -106,7 +106,7 @@ def _guides(
     scene: Scene, path: Motion, at: int, paper: _Paper, spare_m: float, colours: dict[str, str]
 ) -> Iterable[str]:
     for slider in scene.sliders.values():
-        ends = shape.rail(slider, path, at, spare_m)[[0, -1]]
+        ends = shape.rail(slider, path, path, at, spare_m)[[0, -1]]
         colour = "currentColor" if slider.on == GROUND else colours[slider.on]
         yield (
             f'<polyline points="{_points(paper.at(ends))}" stroke="{colour}" stroke-width="1.5" '
@@ -133,10 +133,7 @@ def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: 
 
 
 def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
-    direction = shape.guide_direction(slider, path, at)
-    across = np.array([-direction[1], direction[0]])
-    half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * BLOCK / paper.per_m
-    corners = path.points[slider.point].position[at] + half @ np.array([direction, across])
+    corners = shape.block_at(slider, path, at, np.array(BLOCK) / paper.per_m)
     places = _points(paper.at(corners))
     return (
         f'<polygon points="{places}" stroke-width="1.5" fill="currentColor" fill-opacity="0.15"/>'

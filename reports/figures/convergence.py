@@ -22,6 +22,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 
+from reports.figures.coinciding import count_coinciding
 from reports.figures.drawing import Mark, around, ends, fitted, marks, measured
 from reports.figures.sheet import Panels, grid, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
@@ -102,18 +103,19 @@ def _error_of(lines: Sequence[Line]) -> str:
 
 def _panel(axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], unit_s: float) -> None:
     """Draw points, fits and floors of one scene; steps in ``unit_s``."""
-    left = axes.get_xlim()[0]
+    left, curves = axes.get_xlim()[0], []
     for line in lines:
         mark, rows, fit = mark_of[named(line)], measured(line), line.fit
         x = rows["dt_s"] / unit_s
         axes.plot(x, rows["place_pure"], color=mark.colour, linewidth=0.35)
-        axes.plot(x, rows["place_pure"], linestyle="none", **mark.points)
+        curves += axes.plot(x, rows["place_pure"], linestyle="none", **mark.points)
         if fit.curve is not None:
             dts = np.geomspace(*fit.used_range_s, ALONG)
             axes.plot(dts / unit_s, [fit.curve.at(dt) for dt in dts], **mark.line)
         if math.isfinite(fit.floor):
             ends_at = fit.used_range_s[0] / unit_s
             axes.plot([left, ends_at], [fit.floor, fit.floor], **mark.line | {"linewidth": 0.6})
+    count_coinciding(axes, curves)
 
 
 def _failed(

@@ -12,7 +12,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from reports.output.numbers import floor_words
-from reports.results.lines import COLOURS, SYMBOLS, Line, Named, looks
+from reports.output.palette import COLOURS
+from reports.results.lines import Line, Named
+from reports.results.looks import SYMBOLS, looks
 from reports.results.overview import Report
 
 
@@ -60,7 +62,7 @@ def fitted(line: Line) -> str:
     fit = line.fit
     order = f"order {fit.order:.2f} ± {fit.order_error:.2f}"
     if fit.kind == "order":
-        return order
+        return "; ".join(filter(None, (order, floor_words(math.nan, fit.floor_below))))
     if fit.kind == "floor":
         return floor_words(fit.floor) + (f", {order}" if math.isfinite(fit.order) else "")
     return WORDS.get(fit.kind, fit.kind)

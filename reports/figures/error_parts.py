@@ -15,6 +15,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from models.scene import Scene, driver
 from reports.drawing.moving import told_places
+from reports.figures.coinciding import count_coinciding
 from reports.figures.drawing import ends
 from reports.figures.sheet import corner_words, grid, one_scale, spaced, tenfold
 from reports.figures.style import INK, Look, power_of_ten
@@ -64,6 +65,7 @@ def draw(report: Report, name: str) -> Figure | None:
     for one, panel in shown:
         room = 0.16 + 0.1 * one.floor.count("\n")
         corner_words(panel, room, f"[{power_of_ten(one.scale)} {unit}]", one.floor)
+        count_coinciding(panel, panel.lines)
     return figure
 
 

@@ -2,8 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -12,23 +10,22 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
-from analytic.forces.virtual_power import ReducedMachine, reduced_machine
 from models.array import Array
-from models.motion import Forces, Motion
-from models.scene import Scene, characteristics, laws
-from models.scene.driver import driver_axis, driver_course, driver_shown, driver_stands
-from reports.describe import free_motion, with_forces
+from models.motion import Forces
+from models.scene.driver import driver_course, driver_shown, driver_stands
+from reports.describe import free_motion
 from reports.describe.force_tables import cycle_of, cycle_words, flow_of
 from reports.drawing.force_arrows import force_arrows
 from reports.drawing.moving import goes_round
-from reports.drawing.shape import PATH_SAMPLES, Label, clear_of_locking, colours_of, place, turn_of
+from reports.drawing.shape import PATH_SAMPLES, Label, colours_of, place, turn_of
 from reports.figures import style
 from reports.figures.drawing import DASHES
+from reports.figures.force_turn import ForceTurn
 from reports.figures.layout import LAYOUT
 from reports.figures.mechanism import mechanism_at
 from reports.figures.sheet import (
+    NUMBER_IN,
     Abscissa,
     Curve,
     LinePanel,
@@ -36,102 +33,15 @@ from reports.figures.sheet import (
     columns_of,
     line_figure,
     sheet,
-    spaced,
 )
-from reports.figures.style import FRONT, INK, QUIET, TINY, FigureSet, Look
+from reports.figures.style import FRONT, INK, TINY, FigureSet, Look
 from reports.output.numbers import readable
-
-
-@dataclass(frozen=True)
-class ForceTurn:
-    """The first turn of a scene: its motion with forces, and the machine reduced to its driver.
-
-    ``x`` is the axis of curves, called ``label``, between ``ends``; ``order`` are its samples.
-    """
-
-    scene: Scene
-    motion: Motion
-    acting: Forces
-    reduced: ReducedMachine
-    x: Array
-    label: str
-    ends: tuple[float, float]
-    order: NDArray[np.intp]
-
-    def plot(self, axes: Axes, series: Array, **look: Any) -> None:
-        """Draw a series of the turn (T,)."""
-        axes.plot(self.x, series[self.order], **look)
-
-    def mark(self, axes: Axes, *, labelled: bool = True) -> None:
-        """Set limits, ticks and label of the horizontal axis; short numbers on the other."""
-        axes.set_xlim(*self.ends)
-        axes.set_xlabel(self.label if labelled else "")
-        axes.tick_params(labelbottom=labelled)
-        style.shorten(axes)
-        if self.label.endswith("[deg]"):
-            spaced(axes, 60.0)
-
-    @property
-    def has_forces(self) -> bool:
-        """True if any forces are left to draw, beside where friction locks."""
-        return bool(np.isfinite(self.acting.torque).any())
-
-    @property
-    def notes(self) -> list[str]:
-        """Notes under each figure."""
-        scene = self.scene
-        notes = [style.note(scene, "closed form", "driver", style.loads_told(scene))]
-        notes += with_forces.force_notes(scene, self.motion)
-        if self.acting.has_equilibria(0).any():
-            left = "" if self.has_forces else ", which is all of the turn"
-            notes.append(f"Forces within 5 deg of it are not drawn{left}.")
-        return notes
-
-
-def force_turn(scene: Scene) -> ForceTurn:
-    """Return the turn of a scene. Raises CrankcheckError as `with_forces`."""
-    motion = with_forces.turn_with_forces(scene)
-    assert motion.forces is not None
-    reduced = reduced_machine(scene, motion.time_s)
-    acting = clear_of_locking(with_forces.cleaned_forces(motion.forces))
-    law, every = scene.driver.law, np.arange(motion.time_s.size)
-    label, x = driver_axis(scene), driver_shown(scene, motion)
-    ends = (float(x.min()), float(x.max()))
-    if not goes_round(scene):  # every place may be passed twice
-        x, label, ends = motion.time_s, "time [s]", (0.0, law.period_s)
-    elif isinstance(law, laws.ConstantSpeed) and _is_cyclic(scene, np.radians(x)):
-        # A turn is like every other: it is drawn from 0 on, wherever it began.
-        around = np.mod(np.round(x[:-1], 9), 360.0)
-        every = np.argsort(around)
-        every = np.concatenate([every[-1:], every, every[:1]])
-        x, ends = around[every], (0.0, 360.0)
-        x[0], x[-1] = x[0] - 360.0, x[-1] + 360.0
-    return ForceTurn(scene, motion, acting, reduced, x, label, ends, every)
-
-
-def _is_cyclic(scene: Scene, theta: Array) -> bool:
-    """True if every turn of a driver of one speed is like the others: no load follows time, and
-    none follows the angle otherwise than turn by turn (a four-stroke's does)."""
-    for load in scene.loads.values():
-        own = load.characteristic
-        if isinstance(own, characteristics.Constant) or load.over == "displacement":
-            continue
-        if load.over == "time":
-            return False
-        try:
-            again, size = own.at(theta - math.tau), np.max(np.abs(own.at(theta)))
-        except ValueError:  # a table of this turn alone
-            return False
-        if np.max(np.abs(again - own.at(theta))) > 1e-9 * size:
-            return False
-    return True
-
 
 COLUMNS = 3
 EVERY_DEG, NAMED_DEG = 30, 90
 """Angles of the driver with a dot, and angles with their number beside it."""
-ROOM, NUMBER_IN = 0.12, 0.45
-"""Room around a curve, over its size, and room for a number under it [inch]."""
+ROOM = 0.12
+"""Room around a curve, over its size."""
 
 
 def hodographs(turn: ForceTurn) -> Figure | None:
@@ -196,16 +106,12 @@ def _numbers(
     axes: Axes, dots: dict[int, int], force: Array, low: Array, per_n: float, side: float
 ) -> None:
     """Draw the driver's angle beside some dots, clear of the curve and of one another."""
-    named = [
-        (k, deg) for k, deg in dots.items() if deg % NAMED_DEG == 0 and np.isfinite(force[k]).all()
-    ]
-    curve = (force[np.isfinite(force).all(axis=1)] - low) * per_n
-    height = 0.8 * TINY / style.POINTS
+    there = np.asarray(np.isfinite(force).all(axis=1))
+    curve, height = (force[there] - low) * per_n, 0.8 * TINY / style.POINTS
+    named = {str(deg): k for k, deg in dots.items() if deg % NAMED_DEG == 0 and there[k]}
     labels = [
-        Label(
-            str(deg), (style.width_in(str(deg), TINY), height), (force[k] - low)[None] * per_n, 0.02
-        )
-        for k, deg in named
+        Label(text, (style.width_in(text, TINY), height), (force[[k]] - low) * per_n, 0.02)
+        for text, k in named.items()
     ]
     if not labels:
         return
@@ -214,7 +120,7 @@ def _numbers(
     centres = place(labels, np.vstack([heavy, cross]), curve[:0], (side, side))
     for label, (x, y) in zip(labels, centres, strict=True):
         right, up = (float(each) for each in low + np.array([x, y]) / per_n)
-        look: dict[str, Any] = {"size": TINY, "color": style.QUIET, "ha": "center", "va": "center"}
+        look: Look = {"size": TINY, "color": style.QUIET, "ha": "center", "va": "center"}
         axes.text(right, up, label.text, zorder=5, **look)
 
 
@@ -257,6 +163,8 @@ LOADS: Look = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5,
 CURVE: Look = {"color": "#1f5f9e", "linewidth": 1.2}
 LOCKED: Look = {"color": FRONT, "linewidth": 0.0}
 JAMS: Look = {"facecolor": "none", "edgecolor": FRONT, "hatch": "////", "linewidth": 0.0}
+HEIGHTS = {1: 2.1, 2: 1.6}
+"""Height of a panel [inch], by their number."""
 
 
 def _torque(turn: ForceTurn) -> Figure | None:
@@ -271,26 +179,19 @@ def _torque(turn: ForceTurn) -> Figure | None:
     drive = turn.scene.driver
     torque, held, rubbing = turn.acting.torque, -turn.reduced.torque, _of_friction(turn)
     mean = math.nan if turn.acting.has_equilibria(0).any() else mean_torque(turn)
-    entries = [(Line2D([], [], **TORQUE), f"driving {drive.effort}")]
+    shares: list[Curve] = [] if rubbing is None else [("friction", rubbing, FRICTION)]
+    if shares or bool(np.nanmax(np.abs(held), initial=0.0) > 0.0):
+        inertia = torque - held - (0.0 if rubbing is None else rubbing)
+        shares = [("inertia", inertia, INERTIA), ("weights and loads", held, LOADS), *shares]
+    looks = {f"driving {drive.effort}": TORQUE}
     if math.isfinite(mean):
-        words = f"mean over time {readable(mean)} {drive.effort_unit}"
-        entries.append((Line2D([], [], **MEAN), words))
-    is_loaded = rubbing is not None or bool(np.nanmax(np.abs(held), initial=0.0) > 0.0)
-    if is_loaded:
-        entries.append((Line2D([], [], **INERTIA), "inertia"))
-        entries.append((Line2D([], [], **LOADS), "weights and loads"))
-    if rubbing is not None:
-        entries.append((Line2D([], [], **FRICTION), "friction"))
-    label = f"{drive.effort} on {drive.joint} [{drive.effort_unit}]"
-    title, panel = f"Driving {drive.effort}", LinePanel(label, [])
-    figure, (axes,) = line_figure(turn, title, [panel], turn.notes, entries)
-    axes.axhline(0.0, color=QUIET, linewidth=0.5)
-    if rubbing is not None:
-        turn.plot(axes, rubbing, **FRICTION)
-    if is_loaded:
-        turn.plot(axes, torque - held - (0.0 if rubbing is None else rubbing), **INERTIA)
-        turn.plot(axes, held, **LOADS)
-    turn.plot(axes, torque, **TORQUE)
+        looks[f"mean over time {readable(mean)} {drive.effort_unit}"] = MEAN
+    looks |= {name: look for name, _, look in shares}
+    entries = [(Line2D([], [], **look), words) for words, look in looks.items()]
+    panel = LinePanel(f"{drive.effort} on {drive.joint} [{drive.effort_unit}]", [], level=0.0)
+    figure, (axes,) = line_figure(turn, f"Driving {drive.effort}", [panel], turn.notes, entries)
+    for _, series, look in (*shares, ("", torque, TORQUE)):
+        turn.plot(axes, series, **look)
     if math.isfinite(mean):
         axes.axhline(mean, **MEAN)
     return figure
@@ -335,7 +236,8 @@ def reactions(axis: Abscissa, acting: Forces, notes: Sequence[str]) -> Figure | 
         return None
     panels = [LinePanel("force [N]", _dashed(forces))]
     panels += [LinePanel("moment [N m]", _dashed(moments))] * bool(moments)
-    return _stacked(axis, "Reactions", panels, notes, top=0.2)[0]
+    height = HEIGHTS[len(panels)]
+    return line_figure(axis, "Reactions", panels, notes, height=height, top=0.2, down=0.22)[0]
 
 
 def _dashed(rows: Sequence[tuple[str, Array, str]]) -> list[Curve]:
@@ -345,13 +247,6 @@ def _dashed(rows: Sequence[tuple[str, Array, str]]) -> list[Curve]:
         (name, series, {"color": colour, "linestyle": (0, dash) if dash else "-"})
         for (name, series, colour), dash in zip(rows, dashes, strict=True)
     ]
-
-
-def _stacked(
-    axis: Abscissa, title: str, panels: Sequence[LinePanel], notes: Sequence[str], top: float
-) -> tuple[Figure, list[Axes]]:
-    height = 2.1 if len(panels) == 1 else 1.6
-    return line_figure(axis, title, panels, notes, height=height, top=top, down=0.22)
 
 
 def _efficiency(turn: ForceTurn) -> Figure | None:
@@ -366,15 +261,14 @@ def _efficiency(turn: ForceTurn) -> Figure | None:
     over = math.nan if cycle is None else cycle.cycle
     if math.isfinite(over):
         entries.append((Line2D([], [], **MEAN), f"over a cycle {readable(over)}"))
-    bands = []
-    for number, words, look in ((0, "locks itself", LOCKED), (2, "may jam", JAMS)):
-        if (samples := turn.acting.has_equilibria(number)).any():
-            bands.append((samples, look))
-            entries.append((Patch(**look), words))
+    kinds = ((0, "locks itself", LOCKED), (2, "may jam", JAMS))
+    bands = [(turn.acting.has_equilibria(n), words, look) for n, words, look in kinds]
+    bands = [band for band in bands if band[0].any()]
+    entries += [(Patch(**look), words) for _, words, look in bands]
     notes = [*cycle_words(turn.scene, cycle), "No curve where no power flows.", *turn.notes]
     panel = LinePanel("efficiency", [])
     figure, (axes,) = line_figure(turn, "Efficiency", [panel], notes, entries)
-    for samples, look in bands:
+    for samples, _, look in bands:
         axes.fill_between(turn.x, 0.0, 1.05, where=samples[turn.order], **look)
     if math.isfinite(over):
         axes.axhline(over, **MEAN)
@@ -390,13 +284,12 @@ def _reduced(turn: ForceTurn) -> Figure:
     panels = [LinePanel(mass, [("", reduced.inertia, CURVE)])]
     if np.nanmax(np.abs(reduced.torque), initial=0.0) > 0.0:
         effort = f"{drive.effort} [{drive.effort_unit}]"
-        panels.append(LinePanel(effort, [("", reduced.torque, CURVE)]))
+        panels.append(LinePanel(effort, [("", reduced.torque, CURVE)], level=0.0))
     else:
         notes = [f"No weight or load acts, so the reduced {drive.effort} is 0.", *notes]
-    figure, axes = _stacked(turn, f"Reduced to {drive.joint}", panels, notes, top=0.15)
+    title, height = f"Reduced to {drive.joint}", HEIGHTS[len(panels)]
+    figure, axes = line_figure(turn, title, panels, notes, height=height, down=0.22)
     axes[0].set_ylim(bottom=0.0)
-    if len(axes) > 1:
-        axes[1].axhline(0.0, color=QUIET, linewidth=0.5)
     return figure
 
 

@@ -8,7 +8,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,14 +17,21 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from models.array import Array
+from models.errors import CrankcheckError
 from models.motion import Motion
-from models.scene import GROUND, Scene, Slider
+from models.scene import GROUND, Scene
 from models.scene.driver import driver_stands
 from reports.drawing import shape
 from reports.drawing.force_arrows import ForceArrows, force_arrows
-from reports.drawing.moving import Magnified, magnification
+from reports.drawing.moving import (
+    FARTHEST,
+    Magnified,
+    largest_displacement,
+    magnification,
+    rounded,
+)
 from reports.drawing.pair_curves import blocks_of, pair_curves
-from reports.figures.style import POINTS, SIZE, SMALL, width_in
+from reports.figures.style import POINTS, SIZE, SMALL, Look, width_in
 from reports.output.numbers import readable
 from reports.protocol.way import way_of
 
@@ -41,7 +47,7 @@ def draw_arrows(axes: Axes, arrows: ForceArrows, motion: Motion, index: int) -> 
         axes.plot(*line, color="white", linewidth=3.2, zorder=6)
         axes.plot(*line, color=colour, linewidth=1.6, zorder=6)
         if arrow.is_whole:
-            look: dict[str, Any] = {"facecolor": colour, "edgecolor": "white", "linewidth": 0.5}
+            look: Look = {"facecolor": colour, "edgecolor": "white", "linewidth": 0.5}
             axes.fill(*arrow.head(arrows.size).T, zorder=7, **look)
 
 
@@ -52,20 +58,11 @@ def scale_bar(axes: Axes, arrows: ForceArrows, box: tuple[Array, Array], fontsiz
     long = arrows.bar_n * arrows.m_per_n
     right, low = float(box[1][0]) - 0.03 * arrows.size, float(box[0][1]) + 0.03 * arrows.size
     tick = 0.012 * arrows.size
-    ends = [right - long, right - long, right - long, right, right, right]
     high = [low - tick, low + tick, low, low, low + tick, low - tick]
-    axes.plot(ends, high, color=INK, linewidth=1.2, zorder=8)
-    axes.annotate(
-        f"{arrows.bar_n:g} N",
-        (right - long / 2, low),
-        (0, 2.5),
-        textcoords="offset points",
-        ha="center",
-        va="bottom",
-        fontsize=fontsize,
-        color=INK,
-        zorder=8,
-    )
+    axes.plot([right - long] * 3 + [right] * 3, high, color=INK, linewidth=1.2, zorder=8)
+    look: Look = {"ha": "center", "va": "bottom", "fontsize": fontsize, "color": INK, "zorder": 8}
+    places = (right - long / 2, low), (0, 2.5)
+    axes.annotate(f"{arrows.bar_n:g} N", *places, textcoords="offset points", **look)
 
 
 def write_names(
@@ -89,14 +86,14 @@ def write_names(
     paper = shape.Sheet(low, tuple((high - low) * per_m), per_m, 0.1 * scene.longest_m)
     for each in shape.names(scene, motion, at, paper, room, taken):
         slope = "normal" if each.is_point else "italic"
-        look: dict[str, Any] = {"size": sizes[each.is_point], "style": slope, "zorder": 8}
+        look: Look = {"size": sizes[each.is_point], "style": slope, "zorder": 8}
         axes.text(each.x, each.y, each.text, ha="center", va="center", **look)
 
 
 FRAMES, FRAME_S, LARGER = 60, 0.06, 8.0 / 7.0
 STRIP = 6
 GUIDE = "#9aa5b1"
-RUN: dict[str, Any] = {"color": INK, "linewidth": 1.4, "linestyle": (0, (3.0, 1.5))}
+RUN: Look = {"color": INK, "linewidth": 1.4, "linestyle": (0, (3.0, 1.5))}
 
 
 @dataclass(frozen=True)
@@ -109,7 +106,8 @@ class DrawnRun:
 
     def beside(self, scene: Scene, positions: int, most_s: float) -> Magnified:
         """Return the run and the reference at some of its samples: those of its second turn, where
-        it has two, and of free motion from its start on."""
+        it has two, and of free motion from its start on. Raises CrankcheckError for a factor that
+        draws the run far out of the picture."""
         time_s, lasts = self.motion.time_s, min(scene.driver.law.period_s, most_s)
         start = 0.0 if scene.is_free or time_s[-1] < 1.99 * lasts else scene.driver.law.period_s
         ends = np.searchsorted(time_s, [start - 1e-9 * lasts, start + (1.0 + 1e-9) * lasts])
@@ -118,6 +116,12 @@ class DrawnRun:
         run = self.motion.each_series(lambda series: series[samples])
         size = shape.size_of_motion(scene, exact)
         factor = magnification(run, exact, {}, size) if self.factor is None else self.factor
+        off = largest_displacement(run, exact, {})
+        if factor > 1.0 and factor * off > (reach := FARTHEST * scene.longest_m):
+            raise CrankcheckError(
+                f"--magnify: found {factor:g}, which draws the run up to {factor * off:.3g} m off; "
+                f"give {max(1.0, rounded(reach / off)):g} at most, or auto"
+            )
         return Magnified(scene, run, exact, {}, factor)
 
 
@@ -138,16 +142,9 @@ def animation(scene: Scene, run: DrawnRun | None = None, *, with_forces: bool = 
         picture = Image.fromarray(pixels).convert("RGB")
         frames.append(picture.quantize(64, dither=Image.Dither.NONE))
     buffer = io.BytesIO()
-    frames[0].save(
-        buffer,
-        "GIF",
-        save_all=True,
-        append_images=frames[1:],
-        duration=round(1000 * FRAME_S),
-        loop=0,
-        optimize=True,
-        comment=b"crankcheck",
-    )
+    film: Look = {"duration": round(1000 * FRAME_S), "loop": 0, "optimize": True}
+    film["comment"] = b"crankcheck"
+    frames[0].save(buffer, "GIF", save_all=True, append_images=frames[1:], **film)
     return buffer.getvalue()
 
 
@@ -199,14 +196,9 @@ def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> 
     height = min(max(inner * (high[1] - low[1]) / (high[0] - low[0]), 1.2), 6.0)
     size = (columns * width, rows * (height + top + bottom) + legend)
     figure = Figure(figsize=size, dpi=100)
-    figure.subplots_adjust(
-        left=left / size[0],
-        right=1 - right / size[0],
-        top=1 - top / size[1],
-        bottom=(bottom + legend) / size[1],
-        wspace=(left + right) / inner,
-        hspace=(top + bottom) / height,
-    )
+    ends = {"left": left / size[0], "right": 1 - right / size[0], "top": 1 - top / size[1]}
+    figure.subplots_adjust(**ends, bottom=(bottom + legend) / size[1])
+    figure.subplots_adjust(wspace=(left + right) / inner, hspace=(top + bottom) / height)
     return figure
 
 
@@ -218,7 +210,7 @@ def _legend(figure: Figure, turn: _Turn) -> None:
         handles.append(Line2D([], [], label=words, **RUN))
     if turn.arrows is not None:
         words = "force on the body of that colour, black: on a block"
-        look: dict[str, Any] = {"color": INK, "linewidth": 1.6, "marker": ">", "markersize": 5}
+        look: Look = {"color": INK, "linewidth": 1.6, "marker": ">", "markersize": 5}
         handles.append(Line2D([], [], label=words, **look))
     figure.legend(
         handles=handles, loc="lower center", ncols=len(handles), fontsize=8, frameon=False
@@ -245,12 +237,8 @@ def _draw(axes: Axes, turn: _Turn, index: int) -> None:
     if turn.arrows is not None and motion.forces is not None:
         draw_arrows(axes, turn.arrows, motion, index)
         scale_bar(axes, turn.arrows, turn.box, fontsize=8)
-        torque, effort = float(motion.forces.torque[index]), scene.driver.effort
-        title += (
-            f"   {effort} {readable(torque)} {scene.driver.effort_unit}"
-            if math.isfinite(torque)
-            else ""
-        )
+        if math.isfinite(torque := float(motion.forces.torque[index])):
+            title += f"   {scene.driver.effort} {readable(torque)} {scene.driver.effort_unit}"
     axes.set_title(title, fontsize=9 if turn.arrows is None else 8, color=INK)
     axes.set_xlabel("x [m]", fontsize=8)
     axes.set_ylabel("y [m]", fontsize=8)
@@ -273,51 +261,24 @@ def draw_bodies(
             axes.plot(*point.position.T, color=GUIDE, linewidth=line, zorder=1)
     colours = shape.colours_of(scene)
     for slider in blocks_of(scene):
-        rail = GUIDE if slider.on == GROUND else colours[slider.on]
-        _slider(axes, slider, rail, motion, path, index, size)
+        rail = shape.rail(slider, path, motion, index, 0.06 * size)[[0, -1]]
+        colour = GUIDE if slider.on == GROUND else colours[slider.on]
+        axes.plot(*rail.T, color=colour, linewidth=1.4, linestyle=(0, (6, 3)), zorder=2)
+        block = shape.block_at(slider, motion, index, np.array([1.0, 0.6]) * 0.045 * size)
+        axes.fill(*block.T, facecolor="white", edgecolor=INK, linewidth=1.2, zorder=4)
     for own in pair_curves(scene):
         colour = colours.get(own.body, GUIDE)
         for curve in own.at(motion, index):
             axes.fill(*curve.T, fc=(colour, 0.12), ec=colour, linewidth=1.2, zorder=2.5)
     for name, link in scene.links.items():
-        ends = [motion.points[point].position[index] for point in link.points]
-        _link(axes, ends, colours[name])
+        places = np.array([motion.points[point].position[index] for point in link.points])
+        if len(places) > 2:  # a plate
+            axes.fill(*places.T, color=colours[name], alpha=0.25, linewidth=0, zorder=3)
+            places = np.vstack([places, places[:1]])
+        axes.plot(*places.T, color=colours[name], linewidth=4, solid_capstyle="round", zorder=3)
     for name, point in motion.points.items():
         place = point.position[index]
         if name in scene.ground:  # on a triangle
             axes.fill(*shape.foot_of(place, size).T, color=INK, alpha=0.75, linewidth=0, zorder=2)
         axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
     return size
-
-
-def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
-    """Draw a bar between two points; with more points a plate."""
-    places = np.array(corners)
-    if len(places) > 2:
-        axes.fill(*places.T, color=colour, alpha=0.25, linewidth=0, zorder=3)
-        places = np.vstack([places, places[:1]])
-    axes.plot(*places.T, color=colour, linewidth=4, solid_capstyle="round", zorder=3)
-
-
-def _slider(
-    axes: Axes,
-    slider: Slider,
-    colour: str,
-    motion: Motion,
-    path: Motion,
-    index: int,
-    size: float,
-) -> None:
-    """Draw the guide as far as the slider runs on it, and the block."""
-    travel = path.sliders[slider.name].displacement
-    place = motion.points[slider.point].position[index]
-    along = float(motion.sliders[slider.name].displacement[index])
-    direction = shape.guide_direction(slider, motion, index)
-    reach = 0.06 * size
-    ends = [travel.min() - reach - along, travel.max() + reach - along]
-    rail = place + np.outer(ends, direction)
-    axes.plot(*rail.T, color=colour, linewidth=1.4, linestyle=(0, (6, 3)), zorder=2)
-    half = np.array([[-1, -0.6], [1, -0.6], [1, 0.6], [-1, 0.6]]) * 0.045 * size
-    across = np.array([-direction[1], direction[0]])
-    corners = place + half @ np.array([direction, across])
-    axes.fill(*corners.T, facecolor="white", edgecolor=INK, linewidth=1.2, zorder=4)

@@ -59,13 +59,11 @@ def laid_out(run: Run) -> Run:
 
     @wraps(run)
     def with_layout(request: Any, console: Console, progress: Console) -> int:
-        names = (each.name for each in fields(Layout))
-        changed = [n for n in names if getattr(request, n) != getattr(DEFAULT, n)]
+        changed = [n.name for n in fields(Layout) if getattr(request, n.name) != n.default]
         places = [getattr(request, n) for n in ("figures", "family") if hasattr(request, n)]
         if changed and not any(places or [request.output]):
-            where = "--figures" if places else "-o"
-            option = f"--{changed[0].replace('_', '-')}"
-            raise CrankcheckError(f"{option}: no figure is drawn; give {where} DIR as well")
+            where, option = "--figures" if places else "-o", changed[0].replace("_", "-")
+            raise CrankcheckError(f"--{option}: no figure is drawn; give {where} DIR as well")
         _check(request)
         token = LAYOUT.set(request)
         try:
@@ -81,9 +79,8 @@ def _check(layout: Layout) -> None:
         if name not in DOTS_PER_IN:
             raise CrankcheckError(f"--format: {shown(name)} is unknown; give svg, pdf or png")
     if layout.width_mm is not None and not LEAST_MM <= layout.width_mm <= MOST_MM:
-        raise CrankcheckError(
-            f"--width-mm: found {layout.width_mm:g}; give {LEAST_MM:g} to {MOST_MM:g}"
-        )
+        span = f"{LEAST_MM:g} to {MOST_MM:g}"
+        raise CrankcheckError(f"--width-mm: found {layout.width_mm:g}; give {span}")
     if layout.font != FONT:
         from matplotlib.font_manager import get_font_names  # a second
 

@@ -19,7 +19,7 @@ from reports.drawing import force_arrows
 from reports.drawing.shape import PATH_SAMPLES, box_of, clearest, turn_of
 from reports.figures import gif
 from reports.figures.layout import LAYOUT
-from reports.figures.sheet import Panels, sheet
+from reports.figures.sheet import NUMBER_IN, Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL
 from reports.protocol.length import SECONDS, TURNS
 from reports.protocol.way import way_of
@@ -27,9 +27,6 @@ from reports.results.overview import Report, facts_of
 
 FREE_SAMPLES = 2401
 """Samples of the paths of a free motion, which are passed many times."""
-NUMBER_IN = 0.38
-"""Room for a number of the horizontal axis [inch]."""
-
 OF_CLOCK = {TURNS: ("closed form", PATH_SAMPLES), SECONDS: ("integrated", FREE_SAMPLES)}
 """Origin of a motion, and samples of its paths."""
 

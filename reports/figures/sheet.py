@@ -70,7 +70,7 @@ def sheet(
 ) -> tuple[Figure, list[Axes]]:
     """Return an empty figure with its panels, row by row, its legend and its notes.
 
-    The legend has ``entries`` in ``columns`` (0: as many as have room).
+    The legend has ``entries`` in ``columns`` (0: as many as have room); in one they are whole.
     """
     layout = LAYOUT.get()
     width, title = layout.across(width), "" if layout.no_title else title
@@ -78,7 +78,12 @@ def sheet(
     room = width - 2 * EDGE
     widest = max((width_in(text) for _, text in entries), default=0.0) + HANDLE + GAP
     number = columns or max(1, min(int((room + GAP) / widest), len(entries) or 1))
-    in_rows = math.ceil(len(entries) / number)
+    each = (room + GAP) / number - GAP - HANDLE
+    labels = [
+        (artist, "\n".join(style.wrapped(text, each)) if columns == 1 else cut(text, each))
+        for artist, text in entries
+    ]
+    in_rows = math.ceil(sum(1 + text.count("\n") for _, text in labels) / number)
     legend = in_rows * SMALL * 1.38 / style.POINTS + (0.05 if entries else 0.0)
     lines = [line for note in notes for line in folded(note, room)]
     foot = len(lines) * TINY * 1.25 / style.POINTS
@@ -98,21 +103,18 @@ def sheet(
     look: dict[str, Any] = {"size": style.LARGE, "va": "top", "linespacing": 1.2}
     figure.text(edge, 1 - EDGE / height, "\n".join(titles), **look)
     if entries:
-        _legend(figure, entries, number, (edge, (EDGE + foot + legend) / height), room)
+        _legend(figure, labels, number, (edge, (EDGE + foot + legend) / height))
     if lines:
         look = {"size": TINY, "color": style.QUIET, "va": "bottom", "linespacing": 1.25}
         figure.text(edge, EDGE / height, "\n".join(lines), **look)
     return figure, figure.axes
 
 
-def _legend(
-    figure: Figure, entries: Entries, columns: int, corner: tuple[float, float], room: float
-) -> None:
+def _legend(figure: Figure, entries: Entries, columns: int, corner: tuple[float, float]) -> None:
     """Draw the legend with its upper left corner at ``corner`` (shares of the figure)."""
-    each = (room + GAP) / columns - GAP - HANDLE
     figure.legend(
         handles=[artist for artist, _ in entries],
-        labels=[cut(text, each) for _, text in entries],
+        labels=[text for _, text in entries],
         loc="upper left",
         bbox_to_anchor=corner,
         ncols=columns,
@@ -140,7 +142,7 @@ def folded(text: str, room: float, size: float = TINY) -> list[str]:
     return lines
 
 
-MOST_COLUMNS, LEAST_COLUMN_IN, NUMBER_IN = 4, 1.6, 0.3
+MOST_COLUMNS, LEAST_COLUMN_IN, NUMBER_IN = 4, 1.6, 0.38
 """Columns of panels, the least width of one, and that of a number under it [inch]."""
 
 

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from reports.figures.coinciding import count_coinciding
 from reports.figures.drawing import Mark, around, ends, marks, timed
 from reports.figures.sheet import Panels, grid, sheet
 from reports.figures.style import COLUMN_IN, FRONT, logarithmic, power_of_ten
@@ -71,6 +72,7 @@ def _panel(
     for line in lines:
         rows = timed(line)
         axes.plot(rows["s_per_turn"], rows["place_pure"], **mark_of[named(line)].style)
+    count_coinciding(axes, axes.lines[1:])  # behind the front
 
 
 def _over(axes: Axes, report: Report, mark_of: Mapping[Named, Mark]) -> None:
@@ -82,6 +84,7 @@ def _over(axes: Axes, report: Report, mark_of: Mapping[Named, Mark]) -> None:
         own = [one for one in over if (one.engine, one.variant, one.drive) == name]
         points = [(c.s_per_turn, c.worst_error) for c in own if not c.faults]
         axes.plot(*zip(*points, strict=True) if points else ([], []), **mark.style)
+    count_coinciding(axes, axes.lines[1:])
 
 
 def _stair(axes: Axes, points: Iterable[CostAndError]) -> None:

@@ -11,11 +11,13 @@ from markupsafe import Markup
 
 from reports.drawing.moving import embedded, policy
 from reports.output.numbers import NONE, count, duration, error_text, readable
+from reports.output.palette import COLOURS, DARK
 from reports.page.sections import OF_WAYS, SECTIONS
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.sections.section import BUDGET, PageReport, Section
-from reports.results import lines, overview
+from reports.results import overview
+from reports.results.looks import Look
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 
@@ -39,7 +41,7 @@ class Head:
     facts: Sequence[str]
     made: str
     first: str
-    looks: Sequence[lines.Look] = ()
+    looks: Sequence[Look] = ()
 
 
 def page(stored: Stored, matrix: Matrix | None = None) -> str:
@@ -119,16 +121,16 @@ def assembled(head: Head, shown: Iterable[Section | None]) -> str:
     late = "\n".join(_script(name) for name in names)
     plotly = _plotly() if any(one.plotly for one in sections) else ""
     styles = dict.fromkeys(["page.css", *(style for one in sections for style in one.styles)])
-    looks = [{**vars(look), "name": look.name} for look in head.looks]
+    drawn = [{**vars(look), "name": look.name} for look in head.looks]
     return environment.get_template("page.html").render(
         policy=policy([script for script in (early, plotly, late) if script]),
-        style=Markup("\n".join(_asset(name) for name in styles)),
+        style=Markup("\n".join([*map(_asset, styles), palette()])),
         early=Markup(early),
         plotly=Markup(plotly),
         late=Markup(late),
         sections=list(zip(sections, bodies, strict=True)),
         embedded=[
-            ("looks", embedded(looks)),
+            ("looks", embedded(drawn)),
             *((one.anchor, embedded(one.embedded)) for one in sections if one.embedded),
         ],
         head=head,
@@ -153,6 +155,25 @@ def _environment() -> Environment:
     environment.filters |= {"error": error_text, "readable": readable, "duration": duration}
     environment.globals |= {"dash": NONE, "infinite": math.inf}
     return environment
+
+
+DARK_BY_CHOICE = ':root[data-theme="dark"]'
+
+
+@cache
+def palette() -> str:
+    """Return the style of the colours of engines, and of the dark theme by the system."""
+    light, dark = (
+        " ".join(f"--c{number}: {colour};" for number, colour in enumerate(colours))
+        for colours in (COLOURS, DARK)
+    )
+    others = _asset("page.css").partition(f"{DARK_BY_CHOICE} {{")[2].partition("}")[0]
+    by_system = f':root:not([data-theme="light"]) {{{others}  {dark}\n}}'
+    classes = " ".join(f".c{number} {{ color: var(--c{number}); }}" for number in range(len(DARK)))
+    return (
+        f":root {{ {light} }}\n{DARK_BY_CHOICE} {{ {dark} }}\n"
+        f"@media (prefers-color-scheme: dark) {{ {by_system} }}\n{classes}"
+    )
 
 
 def _asset(name: str) -> str:

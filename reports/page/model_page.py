@@ -17,7 +17,7 @@ from reports.own_model.judged import PARTS, JointGap, JudgedModel, errors_of
 from reports.page.build import Head, assembled
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section, name_text, sentence_text, setting_rows
-from reports.results.lines import DASHES, Look
+from reports.results.looks import DASHES, Look
 
 
 def model_page(judged: JudgedModel, facts: Mapping[str, str]) -> str:

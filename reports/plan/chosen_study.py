@@ -32,6 +32,24 @@ class StudyChoice:
     springs: Sequence[str] = ()
     facets: Sequence[int] = ()
 
+    def command(self, folder: object, study: object = None) -> list[str]:
+        """Return the words of the equivalent `crankcheck sweep`."""
+        numbers = {"--steps-per-turn": self.steps_per_turn, "--dt": self.dt_s}
+        numbers |= {"--segments": self.segments, "--facets": self.facets}
+        numbers |= {"--turns": [self.turns or 0.0], "--duration": [self.duration_s or 0.0]}
+        words = {name: ",".join(f"{n:g}" for n in own if n) for name, own in numbers.items()}
+        words |= {"--springs": ",".join(self.springs), "--study": str(study or "")}
+        options = [(name, text) for name, text in words.items() if text]
+        options += [("--engine", name) for name in self.engines]
+        options += [("--profile", name) for name in self.profiles]
+        for owner, chosen in self.overrides.items():
+            for name, values in chosen.items():
+                several = values if isinstance(values, list) else [values]
+                options.append(("--set", f"{owner}.{name}={','.join(map(str, several))}"))
+        flags = ["--forces"] * self.forces + ["--free"] * self.free
+        own = [*self.scenes, *flags, *(word for option in options for word in option)]
+        return ["crankcheck", "sweep", "-o", str(folder), *own]
+
 
 def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Study:
     """Return the study with a choice in place of its own values.

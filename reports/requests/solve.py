@@ -29,7 +29,7 @@ from reports.requests.options import FAMILY, LIVE_SHEET, SolveOptions, given, na
 from reports.requests.solution import Solution, show_solution
 
 if TYPE_CHECKING:
-    from reports.figures.force_figures import ForceTurn
+    from reports.figures.force_turn import ForceTurn
     from reports.figures.style import FigureSet
 
 SAMPLES = 361
@@ -222,7 +222,7 @@ class DrivenSolving(solving.Solving):
         return FORCE_FIGURES
 
     def course(self, solution: Solution) -> ForceTurn:
-        from reports.figures.force_figures import force_turn
+        from reports.figures.force_turn import force_turn
 
         return force_turn(solution.scene)
 

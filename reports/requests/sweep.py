@@ -170,9 +170,7 @@ def sweep(
         asked = chosen_study(told, choice, is_shipped=study is None)
         console = terminal(stderr=True)
         console.quiet = not arguments.is_true(progress, "progress")
-        laid, done = swept(
-            asked, where, manner, sweep_arguments.command_of(choice, where, study), console
-        )
+        laid, done = swept(asked, where, manner, choice.command(where, study), console)
     return Sweep(where, len(laid.tasks), done)
 
 

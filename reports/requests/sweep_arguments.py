@@ -109,27 +109,3 @@ def overrides_of(settings: object, engines: Sequence[str]) -> chosen_study.Overr
             raise CrankcheckError(f"--set {name!r}: found no value; give one, or several")
         found.setdefault(owner, {})[setting] = plain
     return found
-
-
-def command_of(choice: chosen_study.StudyChoice, folder: Path, study: object) -> list[str]:
-    """The equivalent command, which a store names to repair it."""
-    several = ",".join(f"{each:g}" for each in choice.steps_per_turn)
-    options = [
-        *(("--study", study) if study is not None else ()),
-        *(word for name in choice.engines for word in ("--engine", name)),
-        *(word for name in choice.profiles for word in ("--profile", name)),
-        *(("--steps-per-turn", several) if several else ()),
-        *(("--turns", f"{choice.turns:g}") if choice.turns is not None else ()),
-        *(("--forces",) if choice.forces else ()),
-        *(("--free",) if choice.free else ()),
-        *(("--dt", ",".join(f"{each:g}" for each in choice.dt_s)) if choice.dt_s else ()),
-        *(("--duration", f"{choice.duration_s:g}") if choice.duration_s is not None else ()),
-        *(("--segments", ",".join(map(str, choice.segments))) if choice.segments else ()),
-        *(("--springs", ",".join(choice.springs)) if choice.springs else ()),
-        *(("--facets", ",".join(map(str, choice.facets))) if choice.facets else ()),
-    ]
-    for owner, chosen in choice.overrides.items():
-        for name, values in chosen.items():
-            told = ",".join(map(str, arguments.each_of(values)))
-            options += ["--set", f"{owner}.{name}={told}"]
-    return ["crankcheck", "sweep", "-o", str(folder), *choice.scenes, *map(str, options)]

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, cast
@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from reports.judge import halving
 from reports.plan.study import Study
-from reports.protocol.length import SECONDS, clock_of, common_clock
+from reports.protocol.length import clock_of
 from reports.protocol.way import ResultKind, Way, way_of_row
 from reports.quantities import QUANTITIES
 from reports.results.line_fit import LineFit, fit_line, words
@@ -223,82 +223,6 @@ def _timed(cells: pd.DataFrame) -> pd.DataFrame:
 def registered(engine: str) -> registry.Declaration:
     """Return the declaration of an engine in a store, which need not be installed or known here."""
     return registry.declaration(engine) if engine in registry.ENGINES else registry.OWN
-
-
-FAMILY = 4
-"""Colours in a family; the style sheet has three families: cool, warm, and green with grey."""
-FAMILIES = 3
-ALONE = 6
-"""Colours of further engines, after those of the families: one each."""
-COLOURS = (
-    *("#11365a", "#1e6d93", "#00a07e", "#4c0d84", "#6f0a2c", "#c8402a"),
-    *("#c97c00", "#b06a8f", "#4c480b", "#48966a", "#8f8f0f", "#164937"),
-    *("#1551ff", "#b60872", "#8282fb", "#0401c2", "#fd36c5", "#8e3bc3"),
-)
-"""Colours on light paper, as in the style sheet of the page."""
-SYMBOLS = (
-    *("circle", "square", "diamond", "triangle-up", "cross", "star"),
-    *("triangle-down", "hourglass", "x"),
-)
-"""Names of the markers in Plotly; the legends draw the same."""
-DASHES = ("solid", "dash", "dot", "dashdot")
-SIZES = (11.0, 9.5, 8.0, 6.5)
-"""Sizes of markers: equal curves of one engine are seen as rims around each other."""
-
-
-@dataclass(frozen=True)
-class Look:
-    """An engine with one set of settings: its number in the page, and its marks.
-
-    Engines differ in marker and colour: the first three have a family of colours each, further ones
-    a colour. The settings of an engine differ in dash, and in colour within a family: distinct
-    without colours as well.
-    """
-
-    number: int
-    engine: str
-    variant: str
-    version: str
-    colour: int
-    symbol: str
-    dash: str
-    size: float
-    formulation: str = "own"
-    precision: str = "double"
-
-    @property
-    def name(self) -> str:
-        return f"{self.engine} {self.variant}"
-
-
-def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
-    """Return a look for every engine, variant and drive, in the order of the lines; without the
-    drive if all lines are free motions."""
-    lines = tuple(lines)
-    bare = common_clock(line.drive for line in lines) is SECONDS
-    every: dict[Named, Look] = {}
-    engines: dict[str, int] = {}
-    for line in lines:
-        if named(line) in every:
-            continue
-        family = engines.setdefault(line.engine, len(engines))
-        place = sum(1 for engine, *_ in every if engine == line.engine)
-        own = registered(line.engine)
-        every[named(line)] = Look(
-            number=len(every),
-            engine=line.engine,
-            variant=line.variant if bare else called(line.variant, line.drive),
-            version=line.version,
-            colour=family * FAMILY + place % FAMILY
-            if family < FAMILIES
-            else FAMILIES * FAMILY + (family - FAMILIES) % ALONE,
-            symbol=SYMBOLS[family % len(SYMBOLS)],
-            dash=DASHES[place % len(DASHES)],
-            size=SIZES[place % len(SIZES)],
-            formulation=own.formulation,
-            precision=own.precision,
-        )
-    return every
 
 
 def label(name: Named) -> str:

@@ -18,17 +18,8 @@ from reports.plan.requirements import under_control
 from reports.protocol.length import FACETS, SECONDS, TURNS, Clock, clock_of, common_clock
 from reports.protocol.way import TARGETS, WAYS, way_of_row
 from reports.results.candidates import Candidate, Costs, candidates, costs_of, noise
-from reports.results.lines import (
-    OWN,
-    Line,
-    Look,
-    Named,
-    lines,
-    looks,
-    machine,
-    named,
-    settings_told,
-)
+from reports.results.lines import OWN, Line, Named, lines, machine, named, settings_told
+from reports.results.looks import Look, looks
 from reports.results.recommend import Recommendation, recommendations
 from reports.store.reader import Stored
 

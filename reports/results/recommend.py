@@ -5,7 +5,7 @@ terminal too, with the noise.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rich.console import Group, RenderableType
@@ -15,6 +15,7 @@ from rich.text import Text
 from models.errors import few
 from reports.output.console import grid
 from reports.output.numbers import short
+from reports.output.palette import engine_styles
 from reports.protocol.length import clock_of
 from reports.protocol.way import WAYS, ResultKind, way
 from reports.results.candidates import (
@@ -221,18 +222,21 @@ def recommendation_table(
     """Return the cheapest settings for each target and engine, with their notes below: a table each
     of driven scenes, of free motion, and of elastic links."""
     kinds = dict.fromkeys(_kind(one) for one in recommendations)
+    styles = engine_styles(one.best.engine for one in recommendations)
     tables: list[RenderableType] = []
     for kind in kinds:
         own = [one for one in recommendations if _kind(one) == kind]
-        tables += ["", _table(own, width)]
-    return Group(*tables[1:]) if tables else _table(recommendations, width)
+        tables += ["", _table(own, width, styles)]
+    return Group(*tables[1:]) if tables else _table(recommendations, width, styles)
 
 
 def _kind(one: Recommendation) -> tuple[ResultKind, str]:
     return one.best.kind, clock_of(one.best.drive).name
 
 
-def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableType:
+def _table(
+    recommendations: Sequence[Recommendation], width: int, styles: Mapping[str, str]
+) -> RenderableType:
     """Return the table of one kind: driven or free, with rigid links or elastic ones."""
     wide = width >= WIDE
     best = recommendations[0].best if recommendations else None
@@ -249,17 +253,18 @@ def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableT
     notes: list[str] = []
     for one in recommendations:
         mark = _mark(_note(one), notes)
-        table.add_row(*_row(one, mark, wide))
+        table.add_row(*_row(one, mark, wide, styles))
         if one.steadier is not None:
-            table.add_row(*_row(one.steadier, "", wide, steadier=True), style="dim")
+            table.add_row(*_row(one.steadier, "", wide), style="dim")
     return Group(table, *(Text(f"[{i}] {note}") for i, note in enumerate(notes, 1)))
 
 
 def _row(
-    one: Recommendation, mark: str, wide: bool, *, steadier: bool = False
+    one: Recommendation, mark: str, wide: bool, styles: Mapping[str, str] | None = None
 ) -> Sequence[str | Text]:
+    """Return a row; of steadier settings, below another row of the engine, without ``styles``."""
     best = one.best
-    name = Text(("or " if steadier else "") + called(best.variant, best.drive))
+    name = Text(("" if styles else "or ") + called(best.variant, best.drive))
     numbers = [
         f"{best.steps_per_turn:g}",
         f"{best.us_per_step:.2f}",
@@ -273,7 +278,8 @@ def _row(
         name, numbers = Text("none", "red"), ["-"] * len(numbers)
     if mark:
         name.append(f" [{mark}]", "yellow")
-    first = ["", ""] if steadier else [short_target(one.target), best.engine]
+    engine = Text(best.engine, styles[best.engine]) if styles else ""
+    first = [short_target(one.target) if styles else "", engine]
     return [*first, name, *numbers]
 
 

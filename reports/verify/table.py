@@ -23,10 +23,12 @@ from reports.judge.three_steps import Convergence
 from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, remark, suite_of
 from reports.output.numbers import count, readable
+from reports.output.palette import engine_styles
 from reports.protocol.way import WAYS
 from reports.quantities import QUANTITIES, named
 
 Texts = Callable[[Checked], Sequence[str]]
+Styles = Mapping[str, str]
 Part = tuple[int, Callable[[Sequence[Checked]], Sequence[str]]]
 """A part of the text below the tables, its place among the others, and its lines for cells."""
 
@@ -57,18 +59,18 @@ class CellTable:
     names: int = 18
     forces: bool = False
 
-    def shown(self, profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> Table:
-        """Return the cells of one profile, those out of tolerance first."""
+    def shown(self, role: str, chosen: Sequence[Checked], width: int, styles: Styles) -> Table:
+        """Return the cells of one profile in a role, those out of tolerance first; ``styles`` are
+        those of engines' names."""
         heads, before = next(
             (heads, before) for least, heads, before in self.rooms if width >= least
         )
         apart = width >= self.apart
-        role = "gated" if gated else "shown, not gated"
         first = ("scene", "engine") if apart else ("scene\nengine",)
         after = ("error /\nlimit", *self.after_heads)
         table = grid(
             ("", *first, *(f"{head}:" for head in (*heads, *before)), *after, HALVED),
-            title=f"{self.title}profile {profile} ({role})",
+            title=f"{self.title}profile {role}",
             gap=1,
             whole=("engine", *after),
             cut=("",),
@@ -77,13 +79,14 @@ class CellTable:
         table.columns[-1].max_width = None if apart else 14
         shares = []
         for one in sorted(chosen, key=lambda one: one.verdict == "within"):
-            names = (one.cell.scene.name, one.cell.engine)
+            engine = one.cell.engine
+            names = (Text(one.cell.scene.name), Text(engine, styles[engine]))
             *numbers, share, seen = row_cells(one, heads, self.numbers, forces=self.forces)
             more = self.before(one)[: len(before)]
             shares.append(str(share))
             table.add_row(
                 mark(one),
-                *(names if apart else ["\n".join(names)]),
+                *(names if apart else [Text("\n").join(names)]),
                 *(*numbers, *more, share, *self.after(one), seen),
             )
         table.caption = Text(_words_of_rules(shares), "dim")
@@ -208,14 +211,16 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
     """Print the whole verification."""
     failed = [one for one in checked if one.cell.gated and one.verdict not in ("within", "known")]
     _failures(console, failed)
+    styles = engine_styles(one.cell.engine for one in checked)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
+        role = f"{profile} ({'gated' if gated else 'shown, not gated'})"
         for table in _tables(chosen):
             own = [one for one in chosen if one.cell.way.part("table") is table]
-            console.print(table.shown(profile, gated, own, console.width), "")
+            console.print(table.shown(role, own, console.width, styles), "")
         loaded = [one for one in chosen if one.cell.with_forces and one.errors]
         if loaded:
-            console.print(FORCE_TABLE.shown(profile, gated, loaded, console.width), "")
+            console.print(FORCE_TABLE.shown(role, loaded, console.width, styles), "")
     _advice(console, checked)
     for one in checked:
         if text := one.known_text:

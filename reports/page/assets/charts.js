@@ -36,6 +36,7 @@ crankcheck.ticks = (values) => {
 };
 
 crankcheck.chart = (() => {
+  const PAPER = 680; // width of a diagram on a printed page
   const { colour } = crankcheck;
   // Plotly stands after this script, so that the page is laid out before its megabytes are read.
   const loaded = new Promise((resolve) => {
@@ -51,7 +52,16 @@ crankcheck.chart = (() => {
     };
   }
 
-  function layout(own) {
+  /** The least and the largest of some numbers. */
+  const span = (numbers) => numbers.reduce(([least, most], each) => [Math.min(least, each), Math.max(most, each)], [Infinity, -Infinity]);
+
+  /** Ticks of an axis of powers of ten, `which` of x and y, where its curves span too few of these. */
+  function shortTicks(which, { dtick }, data) {
+    const [least, most] = span(data.flatMap(({ visible = true, [which]: each }) => (visible ? Array.from(each) : [])).filter((each) => each > 0));
+    return dtick && most < 30 * least ? { dtick: undefined, ...(most > 3 * least ? crankcheck.ticks([least, most]) : {}) } : {};
+  }
+
+  function layout(own, data) {
     return {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", showlegend: false, hovermode: "closest",
       font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
@@ -64,9 +74,31 @@ crankcheck.chart = (() => {
       dragmode: finger ? false : "zoom", // a finger scrolls the page
       ...own,
       ...Object.fromEntries(Object.entries(own).filter(([name]) => /^[xy]axis/.test(name)).map(([name, each]) => [
-        name, axis(name.startsWith("y") ? { ...each, title: { standoff: 6, ...each.title } } : each),
+        name, axis({ ...each, ...(name.startsWith("y") ? { title: { standoff: 6, ...each.title } } : {}), ...shortTicks(name[0], each, data) }),
       ])),
     };
+  }
+
+  /** Labels beside curves that lie on each other, within a line's width: how many lie there. */
+  function coinciding(data, { xaxis, yaxis }) {
+    const level = (axis, value) => (value === null ? NaN : axis.type === "log" ? Math.log10(value) : Number(value));
+    const curves = data.filter(({ visible = true, hoverinfo }) => visible && hoverinfo !== "skip").map(({ name, x, y }) => ({
+      name, points: Array.from(x, (each, i) => [level(xaxis, each), level(yaxis, y[i])]).filter((point) => point.every(Number.isFinite)),
+    })).filter(({ points }) => points.length > 1);
+    const every = curves.flatMap(({ points }) => points);
+    const width = [0, 1].map((k) => span(every.map((point) => point[k])).reduce((least, most) => (most - least) / 200));
+    const near = (p, q) => width.every((each, k) => Math.abs(p[k] - q[k]) <= each);
+    const liesOn = (a, b) => a.every(a.length === b.length ? (p, i) => near(p, b[i]) : (p) => b.some((q) => near(p, q)));
+    const groups = [];
+    for (const curve of curves.toSorted((a, b) => b.points.length - a.points.length)) {
+      const group = groups.find(([first]) => liesOn(curve.points, first.points));
+      if (group) group.push(curve);
+      else groups.push([curve]);
+    }
+    const counted = groups.map(([{ points }, ...others]) => ({ at: points[Math.floor(0.6 * points.length)], number: 1 + others.length }));
+    return counted.filter(({ number }) => number > 1).map(({ at: [x, y], number }) => ({
+      x, y, text: `${number} curves coincide`, showarrow: false, yshift: 14, font: { size: 12 }, bgcolor: colour("paper"),
+    }));
   }
 
   const config = {
@@ -81,10 +113,11 @@ crankcheck.chart = (() => {
    */
   return (element, figure, after = () => {}) => {
     let seen = false;
+    let width; // on paper; else that of its place
     const draw = () => {
       if (!seen) return;
       const { data, layout: own } = figure();
-      Plotly.react(element, data, layout(own), config).then(after);
+      Plotly.react(element, data, layout({ annotations: coinciding(data, own), width, ...own }, data), config).then(after);
     };
     const show = () => loaded.then(() => {
       seen = true;
@@ -95,7 +128,14 @@ crankcheck.chart = (() => {
       observer.disconnect();
       show();
     }, { rootMargin: "300px" }).observe(element);
-    addEventListener("beforeprint", show);
+    addEventListener("beforeprint", () => {
+      width = PAPER;
+      show();
+    });
+    addEventListener("afterprint", () => {
+      width = undefined;
+      draw();
+    });
     crankcheck.onTheme(draw);
     return draw;
   };

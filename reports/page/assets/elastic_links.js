@@ -2,7 +2,7 @@
 // Elastic links, one scene at a time: how far they bend over a turn, and their errors.
 
 (() => {
-  const { colour, escaped, freeCourses, looks, unpacked } = crankcheck;
+  const { colour, escaped, folded, freeCourses, looks, unpacked } = crankcheck;
   const own = crankcheck.embedded("elastic");
   const part = (name) => document.getElementById(`elastic-${name}`);
   const [scene, course, error, table] = ["scene", "course", "error", "cells"].map(part);
@@ -17,7 +17,7 @@
 
   const trace = (each, y, name, paint, width, dash) => ({
     x: each.x, y: [...y].map((v) => 1000 * v), name: escaped(name), mode: "lines", line: { color: paint, width, dash },
-    hovertemplate: `${escaped(name)}: %{y:.4~g} mm<extra></extra>`,
+    hovertemplate: `${folded(name)}: %{y:.4~g} mm<extra></extra>`,
   });
 
   /** The beam, once for each elastic link: the deflection in the engine, less its error. */
@@ -74,4 +74,8 @@
   course.addEventListener("change", curves);
   error.addEventListener("change", errors);
   choose();
+  crankcheck.cellsLead("elastic", own, (line) => {
+    scene.value = line.scene;
+    choose();
+  });
 })();

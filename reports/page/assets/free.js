@@ -105,13 +105,12 @@
   });
   error.addEventListener("change", errors);
   choose();
-  const lineOf = (at) => own.scenes.find((each) => each.name === at.scene)?.lines.find(({ look }) => String(look) === at.look);
-  crankcheck.leads("free", lineOf, (at) => {
-    const cell = lineOf(at).cells.find(({ dt_s }) => Math.abs(dt_s * Number(at.steps) - 1) < 1e-6);
-    scene.value = at.scene;
+  crankcheck.cellsLead("free", own, (line, { steps }) => {
+    scene.value = line.scene;
     choose();
-    if (cell) step.value = cell.dt;
-    document.querySelector(`#free-legend [data-item="${at.look}"]`).checked ||= true;
+    const drawn = shown.lines.flatMap(({ look, cells }) => (look === line.look ? cells : []));
+    step.value = drawn.find(({ dt_s }) => Math.abs(dt_s * steps - 1) < 1e-4)?.dt ?? step.value;
+    document.querySelector(`#free-legend [data-item="${line.look}"]`).checked ||= true;
     moved();
   });
 })();

@@ -43,6 +43,7 @@
 
   // The first screen has the same mechanism, with the same engines.
   const answer = crankcheck.stage("answer", { overlays: runs, magnified: () => Number(part("factor").value) });
+  const showCell = crankcheck.cellPanel("motion", own);
   const stage = crankcheck.stage("motion", {
     overlays: runs,
     drawn: (mechanism, position) => {
@@ -69,7 +70,7 @@
     floor.textContent = found ? lineChosen().floor : "No curve of this run: see Stability.";
     parts.offer(found ? found.names : []);
     plot();
-    know();
+    showCell(lineChosen(), lineChosen() && cellAt(lineChosen()), scene.value);
   }
 
   function redraw() {
@@ -77,22 +78,6 @@
     answer.draw();
     const factor = part("factor").selectedOptions[0].textContent;
     document.getElementById("answer-told").textContent = `${scene.value}, ${steps.value} steps a turn, in grey the reference; errors of the engines: ${factor}.`;
-  }
-
-  /** What is known of the run that is chosen. */
-  function know() {
-    const { html, short } = crankcheck;
-    const line = lineChosen();
-    const cell = line && cellAt(line);
-    part("known").hidden = !cell;
-    if (!cell) return;
-    part("cell").textContent = `${scene.value}, ${looks[line.look].name}, ${steps.value} steps a turn: ${cell.verdict}.`;
-    part("failed").replaceChildren(...cell.failed.map((rule) => html("li", {}, `${own.rules[rule] ?? "Rule"} (${rule})`)));
-    part("errors").replaceChildren(...cell.errors.map(([name, unit, error, limit]) => html("tr", {},
-      html("th", { scope: "row" }, name), html("td", { class: "num" }, `${short(error, 3)} `, html("span", { class: "quietly" }, unit)),
-      html("td", { class: "num" }, short(limit, 3)), html("td", { class: "num" }, limit ? `${crankcheck.readable(error / limit, 3)} times` : "–"))));
-    part("set").textContent = own.settings[line.look];
-    part("command").textContent = `${line.command} ${steps.value}`;
   }
 
   const option = (value, text) => crankcheck.html("option", { value: String(value) }, text);

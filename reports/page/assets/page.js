@@ -111,11 +111,14 @@ const crankcheck = (() => {
     });
   }
 
-  addEventListener("beforeprint", () => { // paper is light
+  addEventListener("beforeprint", () => { // paper is light, and nobody opens a drawer of it
     const { theme } = document.documentElement.dataset;
     document.documentElement.dataset.theme = "light";
     retheme();
+    const closed = [...document.querySelectorAll("details:not([open])")];
+    closed.forEach((each) => each.setAttribute("open", ""));
     addEventListener("afterprint", () => {
+      closed.forEach((each) => each.removeAttribute("open"));
       choose(theme ?? system());
       retheme();
     }, { once: true });

@@ -23,6 +23,7 @@ SHARES = {
     "F L": "of largest reaction at longest link",
     "M": "of largest torque",
     "T": "of largest kinetic energy",
+    "D": "of largest deflection",
 }
 DIAGRAMS = {"place_pure": ("place", "rad, or of longest link")} | {
     f"{quantity.tolerance_name(entry.name, each.source)}_pure".replace("-", "_"): (

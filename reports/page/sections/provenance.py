@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 
 from reports.output.write import crankcheck_version
 from reports.page.sections.section import Section, setting_rows
-from reports.results.lines import Line, Look, left_out, usual
+from reports.results.lines import Line, left_out, usual
+from reports.results.looks import Look
 from reports.results.overview import Report
 
 

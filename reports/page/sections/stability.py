@@ -9,7 +9,7 @@ import pandas as pd
 from reports.page.sections.section import Section
 from reports.protocol.length import SECONDS, clock_of
 from reports.results.engine_table import FEWEST
-from reports.results.lines import Look
+from reports.results.looks import Look
 from reports.results.overview import Report
 
 ALL_WITHIN = "within: all"

@@ -10,7 +10,8 @@ from reports.output.numbers import count, duration, error_text, floor_words, lis
 from reports.page.sections.copied import recommended
 from reports.page.sections.section import Section
 from reports.protocol.way import FIXED, SHRINKS
-from reports.results.lines import Line, Look, named
+from reports.results.lines import Line, named
+from reports.results.looks import Look
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
 

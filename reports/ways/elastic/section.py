@@ -8,6 +8,7 @@ from models.array import Array
 from reports.compare.last_turn import Trace
 from reports.drawing.moving import first_turn, packed
 from reports.output.numbers import duration
+from reports.page.sections.cell import known
 from reports.page.sections.section import Section, WaySection
 from reports.protocol.length import SECONDS, TURNS, Clock, clock_of
 from reports.results.lines import Line
@@ -29,7 +30,10 @@ ERRORS = {
     "gap_pure": ("gaps of pins and sliders", "of longest link"),
 }
 """Errors drawn against the step, by column of the store: name and unit."""
-SCRIPTS = ("legend.js", "charts.js", "free_courses.js", "elastic_links.js", "copying.js")
+SCRIPTS = (
+    *("legend.js", "charts.js", "free_courses.js", "cell.js", "elastic_links.js"),
+    "copying.js",
+)
 PREFIX = "deflection."
 """Prefix of the series of a trace that are deflections [m], by link."""
 
@@ -50,9 +54,13 @@ def build(report: Report) -> Section | None:
             "scenes": names,
             "errors": names_of_errors,
             "rows": [row for line in own for row in _rows(report, line)],
-            "costs": [cost_row(one, own[0].period_s) for one in bent],
+            "costs": [cost_row(report, one, own[0].period_s) for one in bent],
         },
-        embedded={"courses": [each for line in own for each in _courses(report, line)], **curves},
+        embedded={
+            "courses": [each for line in own for each in _courses(report, line)],
+            **curves,
+            **known(report, own),
+        },
         scripts=SCRIPTS,
         plotly=True,
     )

@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 
 from reports.output.numbers import duration
+from reports.page.sections.cell import known
 from reports.page.sections.errors import drawn
-from reports.page.sections.motion import FreeCourses, sizes_of
 from reports.page.sections.section import BUDGET, Section, WaySection, steps_held
 from reports.protocol.length import clock_of
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation, short_target
+from reports.ways.free.courses import FreeCourses, sizes_of
 
 KIND = "free"
 SHOWN = (
@@ -18,8 +19,8 @@ SHOWN = (
 )
 """The columns of the table."""
 SCRIPTS = (
-    *("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js"),
-    "copying.js",
+    *("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "cell.js"),
+    *("free.js", "copying.js"),
 )
 FREE_DRIVE = ", free drive"
 """Words of a variant that are left out here, where all motion is free."""
@@ -59,7 +60,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
                 for name in names
             ],
             "errors": names_of_errors,
-            "costs": [cost_row(one) for one in costs],
+            "costs": [cost_row(report, one) for one in costs],
             "thinned": held < max(len(line.cells) for line in lines),
             "held": held,
         },
@@ -69,6 +70,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
                 for name in names
             ],
             **curves,
+            **known(report, lines),
             "judged": sorted({report.look(x).number for x in lines if x.cells["gated"].all()}),
         },
         scripts=SCRIPTS,
@@ -90,7 +92,7 @@ def _rows(report: Report, line: Line) -> list[dict[str, object]]:
     ]
 
 
-def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
+def cost_row(report: Report, one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
     """The cheapest settings of an engine that keep a target on every scene, as a row, with their
     text to be copied for a driver of that period."""
     best = one.best
@@ -99,7 +101,7 @@ def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
         "called": best.variant,
         "snippet": one.snippet(period_s),
         "target": short_target(one.target),
-        "name": f"{best.engine} {best.variant}",
+        "look": report.looks[best.engine, best.variant, best.drive],
         "reason": one.reason.replace(FREE_DRIVE, ""),
         "caution": one.caution.replace(FREE_DRIVE, ""),
         "dt_s": 1.0 / best.steps_per_turn,

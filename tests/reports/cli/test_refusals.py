@@ -60,6 +60,7 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     "export fourbar-lecture-1 --close Q": ["close = Q", "not a pin that can close a loop"],
     "view tangent -o t.mp4": ["'.mp4'", ".gif, .png"],
     "view fourbar-elastic-pulse -o a.gif": "elastic",
+    "view tangent --engine pymunk --magnify 1e30 -o a.gif": ["1e+30", "at most, or auto"],
     "solve flat.toml --forces --at-deg 180": ["crank at 180 deg", "dead point"],
     "solve slider-crank-self-locking --forces --at-deg 90":
         ["crank at 90 deg", "locks itself: friction in piston grows"],

@@ -7,6 +7,7 @@ import pytest
 from rich.console import Console
 
 from reports.judge.cell import Checked, check
+from reports.output.palette import engine_styles
 from reports.verify.table import show
 from tests.worlds.command_line import flat, told
 from tests.worlds.turns import of_turns
@@ -168,3 +169,11 @@ def test_a_verdict_is_whole_at_every_width(checked: list[Checked], width: int) -
             assert one.convergence.words in table
     assert ("   gap " in text) is (width >= 80)
     assert ("accel." in text) is (width >= 100)
+
+
+def test_a_colour_terminal_shows_engines_in_the_colours_of_pages(checked: list[Checked]) -> None:
+    stream = io.StringIO()
+    show(Console(file=stream, force_terminal=True, color_system="truecolor"), checked, {})
+    for engine, colour in engine_styles(["mujoco", "pymunk"]).items():
+        rgb = ";".join(str(int(colour[at : at + 2], 16)) for at in (1, 3, 5))
+        assert stream.getvalue().count(f"\x1b[38;2;{rgb}m{engine}\x1b[0m") == 2 * len(NAMES)

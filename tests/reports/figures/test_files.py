@@ -22,11 +22,13 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files.reading import load_scene
+from reports.figures.coinciding import count_coinciding
 from reports.figures.drawing import marks
-from reports.figures.force_figures import FORCE_FIGURES, force_turn
+from reports.figures.force_figures import FORCE_FIGURES
+from reports.figures.force_turn import force_turn
 from reports.figures.free_figures import _over_one_turn
 from reports.figures.free_runs import free_runs
-from reports.figures.layout import DEFAULT, LEAST_MM
+from reports.figures.layout import LEAST_MM, Layout
 from reports.figures.style import cut, styled, width_in
 from reports.requests.figures import FIGURES, FiguresRequest
 from reports.requests.solve import SolveRequest
@@ -46,7 +48,7 @@ ALL = EACH | {"work-precision", "convergence", "profile"}
 LABELS = {
     "work-precision": ("time per simulated turn [s]",),
     "convergence": ("steps per turn", "largest error: angle [rad], place / L [-]"),
-    "convergence-": ("time step [s]", ": order 1.0"),
+    "convergence-": ("time step [s]", ": order 1.0", "a floor below"),
     "split": ("angle of crank [deg]", "[10⁻³ rad]", "drive", "closure", "floor", "discretisation"),
     "mechanism": ("x [m]", "y [m]", "A", "crank"),
     "profile": ("time over that of the fastest [-]", "share of the scenes [%]", "error up to 10⁻²"),
@@ -109,6 +111,16 @@ def flat(path: Path) -> str:
     return texts(path.read_bytes()).replace("\n", " ")
 
 
+def test_curves_within_a_line_s_width_are_counted_where_they_lie() -> None:
+    axes = Figure().add_subplot()
+    x = np.linspace(0.0, 1.0, 11)
+    curves = [axes.plot(x, x + off)[0] for off in (0.0, 1e-3, 2e-3, 0.5)]
+    curves += axes.plot(x[2:5], x[2:5] + 0.5)
+    count_coinciding(axes, curves)
+    assert [text.get_text() for text in axes.texts] == ["3 curves coincide", "2 curves coincide"]
+    assert axes.texts[1].xy == (x[6], x[6] + 0.5)
+
+
 def test_there_is_an_svg_of_each_figure_that_a_store_has(drawn: Path, drawn_free: Path) -> None:
     """With its fonts, as wide as a column or a page of a paper, and labels with units."""
     assert {path.name for path in drawn.iterdir()} == {f"{name}.svg" for name in ALL}
@@ -143,7 +155,7 @@ def test_what_was_run_and_what_failed_stand_under_a_result(drawn: Path) -> None:
 def test_scene_and_only_choose_and_a_pdf_brings_its_fonts(chosen: tuple[Path, str]) -> None:
     folder, said = chosen
     assert {p.name for p in folder.iterdir()} == {
-        f"mechanism-slotted-lever.{k}" for k in DEFAULT.formats
+        f"mechanism-slotted-lever.{k}" for k in Layout().formats
     }
     assert "1 figure, each as .svg and .pdf" in said
     raw = (folder / "mechanism-slotted-lever.pdf").read_bytes()

@@ -22,7 +22,8 @@ from models.scene.loads import ConstantFriction, CoulombFriction, Load
 from models.scene.tabulated import Tabulated
 from reports.describe.elastic_course import drawn_course
 from reports.figures.elastic_figures import ELASTIC_FIGURES
-from reports.figures.force_figures import FORCE_FIGURES, force_turn, mean_torque
+from reports.figures.force_figures import FORCE_FIGURES, mean_torque
+from reports.figures.force_turn import force_turn
 from reports.lectures.drawing.workbook.family import FamilyCurves, family_curves
 from reports.lectures.drawing.workbook.live_workbook import formulas_of
 from reports.lectures.drawing.workbook.solve_family import (
@@ -115,7 +116,7 @@ def test_the_shares_of_the_torque_are_the_torque(fourbar: Scene) -> None:
     rubbing = replace(fourbar, friction={"A": ConstantFriction("A", 0.25)})
     figure = FORCE_FIGURES.draws["torque"](force_turn(rubbing))
     curves = [np.ravel(line.get_ydata()) for line in figure.axes[0].lines]
-    friction, inertia, held, torque = (c for c in curves if c.size > 2)
+    inertia, held, friction, torque = (c for c in curves if c.size > 2)
     np.testing.assert_allclose(friction, 0.25, rtol=1e-12)
     np.testing.assert_allclose(inertia + held + friction, torque, atol=1e-12)
 

@@ -8,7 +8,8 @@ from axe_playwright_python.sync_playwright import Axe
 
 from analytic.free.release import release
 from models.files.reading import load_scene
-from reports.figures.force_figures import FORCE_FIGURES, force_turn
+from reports.figures.force_figures import FORCE_FIGURES
+from reports.figures.force_turn import force_turn
 from reports.figures.free_figures import FREE_FIGURES, free_course
 from reports.lectures.drawing.sheets.polygon_instant import placed_at_time
 from reports.lectures.drawing.sheets.polygon_page import polygon_page

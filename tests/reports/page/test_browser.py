@@ -174,6 +174,26 @@ def test_a_cell_of_a_table_leads_to_what_is_known_of_it(
     assert list(traces(page, "motion-chart")) == [bodies[1]]
 
 
+def test_curves_that_coincide_are_counted(page: Page) -> None:
+    """All of an error is of its discretisation, where there is no floor: one curve over another."""
+    page.select_option("#motion-settings", label="pymunk tuned")
+    words = (
+        "() => document.getElementById('motion-chart').layout.annotations.map(each => each.text)"
+    )
+    assert page.evaluate(words) == ["2 curves coincide"]
+    page.locator("#motion-parts [data-item='discretisation']").uncheck()
+    assert page.evaluate(words) == []
+
+
+def test_drawers_are_open_on_paper(page: Page) -> None:
+    closed = "() => document.querySelectorAll('details:not([open])').length"
+    before = page.evaluate(closed)
+    page.evaluate("() => dispatchEvent(new Event('beforeprint'))")
+    assert page.evaluate(closed) == 0 < before
+    page.evaluate("() => dispatchEvent(new Event('afterprint'))")
+    assert page.evaluate(closed) == before
+
+
 def test_tables_sort_by_their_numbers_up_and_down_and_are_filtered(page: Page) -> None:
     table = "#recommendation table"
     head = page.locator(f"{table} th").nth(5)

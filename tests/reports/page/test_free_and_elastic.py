@@ -112,6 +112,15 @@ def test_a_free_run_is_drawn_and_every_choice_has_curves(wide: Tab, free_path: P
     wide.slide("free-slider", 300)
     assert wide.drawn("#free-picture .overlays path")[0] != before
     assert "0.250 s" in wide.text("#free-angle")
+    row = seen.locator("#free-cells tbody tr").last
+    row.locator("a.known").click()
+    known = wide.text("#free-known")
+    assert "dt 2.00 ms: within" in known
+    assert row.locator("td").nth(3).inner_text() in known  # the error of phase, by two digits
+    assert wide.text("#free-command").startswith(
+        f"crankcheck sweep -o again {FREE} --free --duration"
+    )
+    assert wide.text("#free-command").endswith("--no-timing --dt 0.002")
 
 
 def test_settings_of_free_motion_are_to_be_copied(free: Stored) -> None:
@@ -171,4 +180,7 @@ def test_the_section_draws_on_a_phone_within_its_window(phone: Tab, bent_path: P
     seen.locator("#elastic-error").select_option("segments_pure")
     names = "() => document.getElementById('elastic-chart').data.map(each => each.name)"
     assert any("mujoco tuned, 4 segments" in name for name in seen.evaluate(names))
+    seen.locator("#elastic-cells a.known").first.click()
+    assert "mujoco tuned, 3 segments, 360 steps a turn" in phone.text("#elastic-known")
+    assert "--segments 3 --turns 1 --springs plain" in phone.text("#elastic-command")
     assert not seen.evaluate(OUT)

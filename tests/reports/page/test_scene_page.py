@@ -17,7 +17,8 @@ from analytic.lectures.synthesis.design import Proposal
 from models.files.reading import load_scene
 from reports.describe.elastic_course import closely_sampled, drawn_course
 from reports.figures.elastic_figures import ELASTIC_FIGURES
-from reports.figures.force_figures import FORCE_FIGURES, force_turn
+from reports.figures.force_figures import FORCE_FIGURES
+from reports.figures.force_turn import force_turn
 from reports.figures.free_figures import FREE_FIGURES, free_course
 from reports.lectures.design.pages import construction_page
 from reports.lectures.drawing.sheets.polygon_instant import placed_at_time

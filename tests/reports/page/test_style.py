@@ -5,15 +5,18 @@ import re
 
 import numpy as np
 
-from reports.page.build import HERE
+from reports.output.palette import COLOURS, colours_of, engine_styles
+from reports.output.palette import DARK as ON_DARK
+from reports.page.build import HERE, palette
 from reports.page.sections.hard import SHADES
-from reports.results.lines import COLOURS
 from reports.stability.matrix import OUTCOMES
 
 CSS, MAP = ((HERE / "assets" / f"{n}.css").read_text(encoding="utf-8") for n in ("page", "map"))
-BLOCKS = re.findall(r":root[^{]*\{([^}]*)\}", CSS)
-LIGHT, SYSTEM_DARK, DARK = (dict(re.findall(r"--([\w-]+): (#\w{6});", block)) for block in BLOCKS)
-"""The colours of each block of the style sheet: light, dark by the system, dark by choice."""
+THEMES: dict[str, dict[str, str]] = {}
+for theme, colours in re.findall(r"(:root[^{]*) \{([^}]*)\}", CSS + palette()):
+    THEMES.setdefault(theme, {}).update(re.findall(r"--([\w-]+): (#\w{6});", colours))
+LIGHT, DARK, SYSTEM_DARK = THEMES.values()
+"""Colours of the style sheet: light, dark by choice, dark by the system."""
 
 
 def luminance(colour: str) -> float:
@@ -37,6 +40,14 @@ def test_both_ways_to_the_dark_theme_are_one() -> None:
 def test_figures_have_the_colours_of_the_light_page() -> None:
     assert [LIGHT[f"c{number}"] for number in range(len(COLOURS))] == list(COLOURS)
     assert f"c{len(COLOURS)}" not in LIGHT
+
+
+def test_names_of_engines_on_a_terminal_are_seen_on_light_and_on_dark_paper() -> None:
+    styles = list(engine_styles(f"engine {number}" for number in range(9)).values())
+    assert len(set(styles)) == 9
+    for number, style in enumerate(styles):
+        assert style in {paper[n] for paper in (COLOURS, ON_DARK) for n in colours_of(number)}
+        assert min(contrast(style, "#ffffff"), contrast(style, "#000000")) >= 3.0, style
 
 
 def test_text_can_be_read_and_lines_be_seen() -> None:

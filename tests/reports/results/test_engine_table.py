@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 
 from reports.results.engine_table import EngineRow, Score, engine_rows, near_ms
-from reports.results.lines import looks
+from reports.results.looks import looks
 from reports.results.overview import Report
 from tests.reports.results.made import PERIOD_S, Row, cell, stored
 

@@ -34,13 +34,13 @@ from reports.lectures.drawing.workbook.live_workbook import (
 )
 from reports.output.console import say_whole
 from reports.output.numbers import count
+from reports.output.palette import COLOURS
 from reports.output.write import crankcheck_version, write
 from reports.page.build import Head, assembled
 from reports.page.sections.section import Section
 from reports.protocol.way import way_of
 from reports.requests import solving
 from reports.requests.options import SolveOptions, given
-from reports.results.lines import COLOURS
 
 LARGEST = 1e9
 """Largest number of a mechanism [SI]."""
