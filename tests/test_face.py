@@ -13,9 +13,9 @@ import pytest
 
 import crankcheck
 from crankcheck import testing as crankcheck_testing
-from tests.worlds.command import COMMAND, PYTHON
+from tests.worlds.command import COMMAND, PYTHON, script
 
-FIRST = """
+STAGES = """
 import json, sys
 before, calls = set(sys.modules), 0
 def count(frame, event, argument):
@@ -24,8 +24,18 @@ def count(frame, event, argument):
 sys.setprofile(count)
 import crankcheck
 sys.setprofile(None)
-print(json.dumps([sorted(set(sys.modules) - before), calls]))
+first = sorted(set(sys.modules) - before)
+from reports.requests import verify
+request = [name for name in sys.modules if name == "scipy" or ".lectures" in name]
+from crankcheck import *
+assert set(crankcheck.__all__) <= set(globals())
+assert dir(crankcheck) == sorted(crankcheck.__all__)
+from crankcheck.testing import assert_within
+every = [name for name in ("mujoco", "pymunk", "pandas") if name in sys.modules]
+print(json.dumps([first, calls, request, every]))
 """
+"""What is loaded after each of three imports, in one process: the package, a request, and all
+names."""
 
 
 def printed(*command: str) -> str:
@@ -33,24 +43,11 @@ def printed(*command: str) -> str:
 
 
 def test_importing_it_or_one_request_loads_hardly_anything() -> None:
-    loaded, calls = json.loads(printed(PYTHON, "-P", "-c", FIRST))
-    assert loaded == ["crankcheck"]
+    first, calls, request, every = json.loads(printed(PYTHON, "-P", "-c", script(STAGES)))
+    assert first == ["crankcheck"]
     assert calls < 1000  # 193; what numpy or typer take is a hundred thousand
-    # Verifying loads no lectures and nothing of scipy.
-    code = (
-        "import sys\nimport reports.requests.verify\n"
-        "print([name for name in sys.modules if name == 'scipy' or '.lectures' in name])"
-    )
-    assert printed(PYTHON, "-P", "-c", code) == "[]\n"
-    # Every name is there, and loads no engine and no table, with asserting too.
-    code = (
-        "import sys\nfrom crankcheck import *\nimport crankcheck\n"
-        "assert set(crankcheck.__all__) <= set(globals())\n"
-        "assert dir(crankcheck) == sorted(crankcheck.__all__)\n"
-        "from crankcheck.testing import assert_within\n"
-        "print([name for name in ('mujoco', 'pymunk', 'pandas') if name in sys.modules])"
-    )
-    assert printed(PYTHON, "-P", "-c", code) == "[]\n"
+    assert request == []  # verifying loads no lectures and nothing of scipy
+    assert every == []  # every name is there, and loads no engine and no table
 
 
 def test_every_function_says_what_its_arguments_are() -> None:

@@ -166,13 +166,19 @@ print(type(motion).__module__, crankcheck.__file__)
 """
 
 
-def test_import_is_the_wheel_and_five_lines_print_a_verdict(installed: Path, mine: Path) -> None:
+def test_import_is_the_wheel_and_five_lines_print_a_verdict(
+    wheel: Path, mine: Path, tmp_path: Path
+) -> None:
+    """What is in the wheel, as pip would lay it out: before the checkout, which is on the path as
+    well."""
     (mine / "five.py").write_text(FIVE_LINES + SOLVES)
-    done = ran(installed / "python", "five.py", cwd=mine)
+    with ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "site")
+    done = ran(sys.executable, "five.py", cwd=mine, PYTHONPATH=str(tmp_path / "site"))
     assert (done.returncode, done.stderr) == (0, "")
     module, path = done.stdout.splitlines()[-1].split()
     assert module == "crankcheck.reports.requests.solution"
-    assert Path(path).is_relative_to(installed.parent)
+    assert Path(path).is_relative_to(tmp_path / "site")
     assert done.stdout.startswith("within\nprofile tuned (gated)\n")
     assert "\nok fourbar-lecture-1      mujoco 1.2e-07 " in done.stdout
     assert "\nWITHIN TOLERANCE: 1 cell (1 scene x 1 engine)\n" in done.stdout
