@@ -99,8 +99,8 @@ def slower(than: float, dts: Array, errors: Array) -> bool:
 
 
 def floor_seen(curve: ErrorCurve, dts: Array, errors: Array) -> bool:
-    """True if the points of a curve show its floor: it is most of the finest error, the curve hardly
-    falls any more, and no power of dt alone goes through the same points."""
+    """True if the points of a curve show its floor: it is most of the finest error, the curve
+    hardly falls any more, and no power of dt alone goes through the same points."""
     if not LEAST_REST <= curve.rest <= MOST_REST or abs(curve.slope) > LEVEL:
         return False
     if curve.scatter > WILD or (curve.freedom == 0 and curve.order >= ORDERS[-1]):
