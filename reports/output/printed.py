@@ -77,7 +77,7 @@ def as_markdown(title: str, *shows: Print) -> str:
     for show in shows:
         show(collector)
     parts = counted(filter(None, collector.parts), COMMENT, "parts")
-    return "\n\n".join([f"## crankcheck {title}", *parts]) + "\n"
+    return "\n\n".join([f"## crankcheck {plain(title)}", *parts]) + "\n"
 
 
 def as_html(drawn: str, *shows: Print) -> str:

@@ -1,4 +1,4 @@
-"""A judged log on the terminal, as Markdown and as JUnit XML: its faults, and their causes."""
+"""A judged log as it is printed, and as JUnit XML: its faults, and their causes."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -11,16 +11,17 @@ from rich.text import Text
 
 from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
-from reports.judge.rules import RULES, titled
+from reports.judge.rules import titled
 from reports.judge.rules.rule import share
 from reports.logs.log_beside import aside
 from reports.output.console import grid, hanging, show_failed
-from reports.output.formats import case_of, folded, plain, remark, suite_of, table
+from reports.output.formats import case_of, remark, suite_of
 from reports.output.numbers import count, error_text, readable, short
 from reports.own_log.drives import why_aside
 from reports.own_log.judged import JudgedLog, LogRow, column_text, log_rows
 from reports.own_log.log_limits import log_kind
 
+HEADS = ("", "columns", "read as", "largest\nerror:", "of its\nscale:", "limit:", "error /\nlimit:")
 WIDE = 90
 """Columns of a terminal that show when an error is largest."""
 ROOM = 1000
@@ -245,29 +246,3 @@ def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
     if judged.not_judged:
         remark(whole, "system-out", f"not judged: {', '.join(judged.not_judged)}")
     return suite_of("judge", [*cases, whole], facts)
-
-
-COMMENT_ROOM = 20_000
-HEADS = ("", "columns", "read as", "largest\nerror:", "of its\nscale:", "limit:", "error /\nlimit:")
-
-
-def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
-    """Return the verdict, the faults and causes, every error, and the reference of the numbers."""
-    failures = (f"{f.rule} {plain(RULES[f.rule].title)}: {plain(f.text)}" for f in judged.failures)
-    rows = shown_rows(judged)
-    cells = [("ok" if row.verdict == "within" else "OUT", *_texts(row)) for row in rows]
-    parts = [
-        f"## crankcheck judge: {plain(judged.log.source)}",
-        f"**{verdict_line(judged).plain}**",
-        "\n".join(f"- {failure}" for failure in failures),
-        "\n".join(f"- cause: {plain(cause_text(c))}" for c in judged.causes),
-        table(HEADS, cells, COMMENT_ROOM, "errors"),
-    ]
-    told = [f"drive: {fit_text(judged)}"] if judged.fit else []
-    told += [f"not judged: {line}" for line in not_judged_lines(judged)]
-    told += filter(None, [rest_text(judged), judged.known_text])
-    told += [*(f"not used: {line}" for line in unused_lines(judged)), *judged.notes]
-    if told:
-        parts.append(folded("more", "\n".join(f"- {plain(each)}" for each in told)))
-    parts.append("\n".join(f"{plain(line)}  " for line in footer(judged, facts)))
-    return "\n\n".join(part for part in parts if part) + "\n"

@@ -27,7 +27,7 @@ from reports.output.printed import present
 from reports.output.write import Outputs, check_file, provenance, write
 from reports.own_log.judged import JudgedLog, judge_log, row_table
 from reports.own_log.log_limits import EVERY, LogRequest
-from reports.own_log.table import markdown, show, suite
+from reports.own_log.table import show, suite, verdict_line
 from reports.plan.requirements import given_of
 from reports.plan.steps import positive
 from reports.protocol.way import way_of
@@ -344,8 +344,8 @@ class JudgeRequest:
         facts = provenance({})
         written = {"--write-known": lambda: known.known_file([judged], before)}
         with outputs.written(contents(judged, facts) | written):
-            page = partial(markdown, judged, facts)
-            present(console, self.format, "", lambda to: show(to, judged, facts), page=page)
+            title = f"judge {judged.log.source}: {verdict_line(judged).plain}"
+            present(console, self.format, title, partial(show, judged=judged, facts=facts))
         return int(judged.verdict == "out" or (self.strict_known and bool(judged.mended)))
 
 

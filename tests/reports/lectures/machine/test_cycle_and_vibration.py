@@ -136,7 +136,7 @@ def test_a_page_is_written() -> None:
             "no flywheel is needed for a coefficient of 0.3: the machine has 0.2",
         ),
         ("cycle shaft.toml -o out.txt", "found '.txt'"),
-        ("flywheel shaft.toml --delta 0.1 --write f.csv", "found .csv; use .toml"),
+        ("flywheel shaft.toml --delta 0.1 --write f.csv", "found '.csv'; use .toml"),
         ("flywheel shaft.toml --delta 0.1 --write shaft.toml", "which is read"),
         ("flywheel shaft.toml --delta 0.1 --free", "give --write FILE.toml"),
         ("cycle shafts.toml", "shafts.toml"),
