@@ -99,7 +99,7 @@ def slower(than: float, dts: Array, errors: Array) -> bool:
 
 
 def floor_seen(curve: ErrorCurve, dts: Array, errors: Array) -> bool:
-    """True if the points of a curve show its floor: it is most of the finest error, the curve hardly
+    """True if the points of a curve show its floor: it is most of the finest error, it hardly
     falls any more, and no power of dt alone goes through the same points."""
     if not LEAST_REST <= curve.rest <= MOST_REST or abs(curve.slope) > LEVEL:
         return False
