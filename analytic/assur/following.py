@@ -238,8 +238,8 @@ def follow(rows: RowsAt, start: CentralPose, to: float, size_m: float) -> TrackP
 
 @dataclass
 class Stride:
-    """Width of the next cells: their halves are at most ``half`` [rad], and a ``share`` of the room
-    before an end."""
+    """Width of the next cells: their halves are at most ``half`` [rad], and a ``share`` of the way
+    to an end."""
 
     half: float
     share: float

@@ -126,8 +126,7 @@ def _refuse_corners(law: CamLaw, follower: Follower) -> None:
 
 
 def refuse_undercut(cam: Cam) -> None:
-    """Refuse a cam that undercuts. Raises CrankcheckError that says from which base radius on it
-    does not."""
+    """Refuse a cam that undercuts. Raises CrankcheckError with the base radius that suffices."""
     _refuse_corners(cam.law, cam.follower)
     if CamLimits().margin(cam) > 0.0:
         return
@@ -161,7 +160,7 @@ class ExaminedCam:
     @cached_property
     def pressures(self) -> tuple[Extreme, Extreme]:
         """Largest magnitudes of the pressure angle [rad]: while the follower rises or rests, and
-        while it returns."""
+        returns."""
         return steepest(self.cam, rising=True), steepest(self.cam, rising=False)
 
     @cached_property

@@ -55,7 +55,7 @@ class CamForces(NamedTuple):
 
 
 def contact_force(cam: Cam, load: FollowerLoad, omega_rad_s: float, phi: Array) -> CamForces:
-    """Return contact force and driving torque at a constant speed. Raises CrankcheckError as
+    """Return contact force and driving torque at constant speed. Raises CrankcheckError as
     `touch`."""
     contact = touch(cam, phi)
     s, first, second, _ = contact.lift

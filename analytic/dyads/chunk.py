@@ -79,8 +79,8 @@ class Chunk:
         passages: Mapping[str, Passage] | None = None,
         roots: Mapping[str, Real] | None = None,
     ) -> Chunk:
-        """Return a chunk with the ground and the body driven against it; certified where ``error``
-        is given."""
+        """Return a chunk with the ground and the body driven against it; certified with
+        ``error``."""
         certified = error is not None
         if error is not None and scene.driver.slider is None:
             error = error._replace(theta=error.theta + SINES)

@@ -75,8 +75,7 @@ class Segments:
 
 Discretisation = Polynomials | Modes | Elements | Segments
 REFERENCE = Polynomials()
-"""The default: good to 1e-9 of the largest deflection, with its resonances where the beam has
-them."""
+"""The default: good to 1e-9 of the largest deflection, with resonances where the beam has them."""
 
 
 def flexible_links(

@@ -118,8 +118,8 @@ def strain_places(element_m: float, count: int) -> Array:
 @dataclass(frozen=True)
 class CubicNodes:
     """Nodes of cubic elements: ``place`` and ``drift`` (n + 1, 3) are x, y [m] and the tangent's
-    angle of each, and their rates; ``strain`` and ``strain_rate`` (n + 1,) are the tangents'
-    lengths less 1."""
+    angle of each, and their rates; ``strain`` and ``strain_rate`` (n + 1,) the tangents' lengths
+    less 1."""
 
     place: Array
     drift: Array

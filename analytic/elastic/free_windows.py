@@ -91,8 +91,8 @@ def by_collocation(
 
 
 def check_smooth(form: TangentForm) -> None:
-    """Refuse loads with kinks over the state, which collocation does not take. Raises
-    CrankcheckError."""
+    """Raise CrankcheckError for loads with kinks over the state, which collocation does not
+    take."""
     if own := switches(form.dynamics.forces):
         raise CrankcheckError(
             f"{form.dynamics.assembly.scene.name}: loads.{own[0].load.name} is not smooth over the "

@@ -77,8 +77,7 @@ def natural_modes(mass: Array, stiffness: Array) -> NaturalModes:
 
 
 MOST = 30.0
-"""Sensitivity from which on no motion is shown: an error of one percent in a modulus changes it by
-a third."""
+"""Sensitivity from which no motion is shown: one percent of a modulus changes it by a third."""
 MODES = 20
 """Number of modes of a link among which the resonating one is searched."""
 

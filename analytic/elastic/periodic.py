@@ -62,8 +62,7 @@ def linearise(
 
 
 def _slope(left: Callable[[Array], Array], by: Array) -> Array:
-    """Return the derivative along a change of the coefficients at 0, by central differences of two
-    steps."""
+    """Return the derivative along a change of the coefficients at 0, by two central differences."""
     far, near = ((left(h * by) - left(-h * by)) / (2.0 * h) for h in (1.0, 0.5))
     return np.asarray((4.0 * near - far) / 3.0)
 
@@ -79,8 +78,7 @@ ENDED = 1e-13
 CLOSE = 1e-13
 """Step of Newton's method, over the largest coefficient, after which none is taken."""
 MOST_STEPS, SLOW = 60, 0.3
-"""Most steps; and the largest ratio of a step to the last before the derivatives are computed
-again."""
+"""Most steps; and the largest ratio of a step to the last without new derivatives."""
 FIRST = 1e-4
 """Deflection for the first derivatives, over the longest link."""
 FAR = 0.5

@@ -160,8 +160,7 @@ class _StepBlock:
 
     @staticmethod
     def solved(form: ReducedForm, edges: Array, z: Array, rates: Array) -> _StepBlock | None:
-        """Solve the windows between edges (W + 1,); None where Newton's method does not
-        converge."""
+        """Solve the windows between edges (W + 1,); None if Newton's method does not converge."""
         h, m = np.diff(edges), form.size
         times = (edges[:-1, None] + h[:, None] * RULE.places).ravel()
         near, shape = form.near(times), (len(h), NODES, m)

@@ -23,7 +23,7 @@ from models.scene import GROUND
 
 
 def torque_of(on: Balance) -> Bounded:
-    """Solve all groups, the last one first; return the remaining torque on the driver, or the force
+    """Solve all groups, the last one first; return the remaining torque on the driver, or force
     along its line."""
     compound = on.structure.compound
     inner = set() if compound is None else {compound.name}

@@ -144,8 +144,8 @@ class Efficiency:
 
     @property
     def cycle(self) -> float:
-        """Useful work over the drive's work; NaN without useful work, as in a machine driven by its
-        loads."""
+        """Useful work over the drive's work; NaN without useful work, as if loads drive the
+        machine."""
         return self.useful / self.put_in if self.useful > 0.0 < self.put_in else float("nan")
 
 

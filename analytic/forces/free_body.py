@@ -283,8 +283,8 @@ class Balance:
             self.push(holder, point, -force)
 
     def slide(self, pair: PrismaticPair, body: str, normal: Bounded, moment: Bounded) -> None:
-        """Let a prismatic pair exert a force along n and a moment on a body, and the opposite on
-        the other."""
+        """Let a prismatic pair exert a force along n and a moment on a body, their opposites on the
+        other."""
         other = self.free[pair.other(body)]
         if pair.other(body) != GROUND:
             other.push(pair.arms[pair.other(body)], -(pair.across * normal))

@@ -106,8 +106,8 @@ def _range_about(spans: list[tuple[float, float]], driver_rad: float) -> tuple[f
 
 
 def _limit(scene: Scene, span: tuple[float, float], side: int) -> LimitPosition:
-    """Return the limit at one end of a range. Raises CrankcheckError where no dyad is stretched or
-    folded there."""
+    """Return the limit at one end of a range. Raises CrankcheckError where no dyad is straight or
+    folded."""
     ready, driver_rad = prepared(scene), span[1] if side > 0 else span[0]
     beyond = driver_rad + side * np.array(BEYOND)
     shortages = ready.stretched(beyond).shortage

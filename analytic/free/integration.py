@@ -168,8 +168,8 @@ class Integration:
     def _tried(
         self, long_s: float, start: tuple[float, float], rough: WindowSolution | None
     ) -> WindowSolution | None:
-        """Solve a window, begun from a ``rough`` one that was longer, or the acceleration ``start``
-        and its slope."""
+        """Solve a window, from a ``rough``, longer one, or the acceleration ``start`` and its
+        slope."""
         if rough is not None and rough.long_s >= long_s:
             first = sums(rough.series[2][None], self.rule.places * (long_s / rough.long_s))
         else:

@@ -59,7 +59,7 @@ class LimitPosition:
         return math.sqrt(max(0.0, self.side * (self.driver_rad - driver_rad)))
 
     def chunk(self, u: Array, rates: Rates, *, bound: bool) -> Chunk:
-        """Return the mechanism at coordinates u (T,) with rates of u and their errors. Raises
+        """Return the mechanism at coordinates u (T,) with rates and errors of u. Raises
         ReachError."""
         theta = self.driver_rad - self.side * u * u
         first, second = -2.0 * self.side * u, -2.0 * self.side

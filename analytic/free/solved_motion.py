@@ -86,8 +86,8 @@ class BodiesMotion(MultibodyMotion):
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
     def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
-        """Return the motion with reactions without bounds of their own; with redundant joints
-        without any."""
+        """Return the motion with reactions without bounds; without reactions for redundant
+        joints."""
         del bound
         acting = super().at(motion.time_s).forces
         assert acting is not None

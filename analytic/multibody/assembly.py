@@ -102,8 +102,7 @@ class Assembly:
         return self._moving.setdefault((body, place, angle_rad), len(self._moving))
 
     def _number_markers(self, flexible: Mapping[str, Flexible]) -> None:
-        """Number the markers: those of rigid bodies, then of each elastic one, last the fixed ones
-        of the ground."""
+        """Number the markers: those of rigid bodies, of each elastic one, last of the ground."""
         still, order = len(self._moving), {name: i for i, name in enumerate(flexible, 1)}
         moving = enumerate(self._moving)
         final = sorted(moving, key=lambda asked: order.get(asked[1][0], 0))  # keeps their order

@@ -91,8 +91,8 @@ class MultibodyMotion:
         return replace(self.dynamics, alpha=method.alpha, beta=method.beta)
 
     def at(self, time_s: Array) -> Motion:
-        """Return the motion at times [s], (T,), with its reactions. Raises CrankcheckError for
-        times beyond it."""
+        """Return the motion at times [s], (T,), with reactions. Raises CrankcheckError beyond its
+        end."""
         instants, assembly, parts = samples(time_s, "time_s"), self.dynamics.assembly, []
         for some, now, _ in self._configurations(instants):
             seconds, multipliers = self._solved(some, now)

@@ -91,8 +91,7 @@ def ready(
 
 
 def _check_elastic(scene: Scene, flexible: Mapping[str, Flexible]) -> None:
-    """Refuse elastic links without a description, and a start for driven scenes alone. Raises
-    CrankcheckError."""
+    """Raise CrankcheckError for elastic links without a description, a start of driven scenes."""
     if missing := [name for name in scene.elastic if name not in flexible]:
         raise CrankcheckError(
             f"{scene.name}: {few(missing, 6)} is elastic, and would be taken as rigid here; solve "

@@ -105,7 +105,7 @@ def _unknown(gear: Gear, hanging: Mapping[str, object]) -> list[str]:
 
 def _placing(bodies: Sequence[str], hanging: Hanging) -> dict[str, str] | None:
     """Return the links in the order of placing, each with its pin; None where one does not hang on
-    exactly one pin."""
+    one pin."""
     placing: dict[str, str] = {}
     while len(placing) < len(bodies):
         unplaced = hanging.keys() - placing.keys()

@@ -56,8 +56,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Leg:
-    """Link of a triad between a known body, by its pair ``outer``, and the central link, by
-    ``inner``."""
+    """Link of a triad: pair ``outer`` is with a known body, ``inner`` with the central link."""
 
     body: str
     outer: JointKey

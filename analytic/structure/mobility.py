@@ -217,8 +217,8 @@ def refuse_higher_pairs(scene: Scene, what: str) -> None:
 
 
 MOST_LOOKS = 200_000
-"""Most pairs tested, over all sets of links, to name a group: about 0.2 s, however many links there
-are."""
+"""Most pairs tested, over all sets of links, to name a group: about 0.2 s for any number of
+links."""
 SHOWN = 8
 """Number of unplaced links that are named."""
 SOLVED = "dyads (RRR, RRP, RPR, PRP, RPP) and triads (class III, order 3) have a solution"

@@ -47,8 +47,7 @@ def regular_bytes(path: Path, most: int) -> bytes:
 
 
 def regular_text(path: Path) -> str:
-    """Read a text file of a user. Raises UnreadableError as `regular_bytes`, and for text that is
-    not UTF-8."""
+    """Read a text file of a user. Raises UnreadableError as `regular_bytes`, and if not UTF-8."""
     try:
         return regular_bytes(path, MOST_TEXT).decode("utf-8-sig")  # some editors put a mark first
     except UnicodeDecodeError:

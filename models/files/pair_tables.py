@@ -276,8 +276,8 @@ def faults_of_cams(cams: schema.RawTables, names: schema.NamesInTables) -> Itera
 
 
 def faults_of_guides(scene: Scene) -> Iterator[str]:
-    """Yield one line per cam whose follower slides on another body than its carrier, or with a body
-    that is elastic."""
+    """Yield a line per cam whose follower slides on another body than its carrier, or is
+    elastic."""
     for name, pair in scene.cams.items():
         if pair.slider and (on := scene.sliders[pair.slider].on) != pair.carrier:
             yield (

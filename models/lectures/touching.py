@@ -128,8 +128,8 @@ def shipped_contacts() -> list[str]:
 
 
 def load_touching(name_or_path: str) -> Touching:
-    """Load a shipped joint by name, or a joint of a file. Raises CrankcheckError as `find_table`
-    and `read_table`."""
+    """Load a shipped joint, or one of a file. Raises CrankcheckError as `find_table`,
+    `read_table`."""
     path = find_table(name_or_path, CONTACTS, "joint", "crankcheck joint")
     table = read_table(path, TouchingTable)
     contacts = tuple(_contact(each) for each in table.contacts)

@@ -80,8 +80,8 @@ def has_control(scene: Scene, writing: Writing) -> bool:
 
 
 def armature(scene: Scene, writing: Writing) -> float:
-    """Return the inertia of the flywheel on the crank [kg m^2], for a slider its mass [kg]; 0
-    without one."""
+    """Return the inertia of the flywheel on the crank [kg m^2], or mass on a slider [kg]; 0 for
+    none."""
     if not writing.flywheel:
         return 0.0
     return writing.flywheel_ratio * inertia_scale(scene) / scene.driver_arm_m**2
@@ -91,8 +91,7 @@ AttributeRow = dict[str, AttributeValue]
 
 
 def attributes(row: Attributes) -> str:
-    """Write attributes of an element; numbers in the shortest form that reads as the same
-    double."""
+    """Write attributes of an element; numbers in the shortest form of the same double."""
     return "".join(f" {name}={quoteattr(_text(value))}" for name, value in row.items())
 
 

@@ -300,8 +300,8 @@ def closings(scene: Scene, state: State) -> Iterator[tuple[str, ...]]:
 
 def driven_freedom(scene: Scene, limbs: Sequence[Limb]) -> tuple[str, float]:
     """Return the name of the driven freedom, and 1.0 if it reads as the driver's own coordinate, or
-    -1.0 if the driven link carries its base. Raises EngineError where the driven joint is not in
-    the tree."""
+    -1.0 if the driven link carries its base. Raises EngineError if the driven joint is not in
+    it."""
     driver = scene.driver
     if driver.is_crank:
         return f"{driver.link}.{scene.driver_pivot}", 1.0

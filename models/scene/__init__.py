@@ -258,8 +258,7 @@ class Scene:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Same:
-    """A scene by identity, a key for results derived from it: equal scenes may differ in the order
-    of their links."""
+    """A scene by identity, a key of its results: equal scenes may order links differently."""
 
     scene: Scene
 
@@ -271,8 +270,8 @@ class Same:
 
 
 def as_bytes(scene: Scene) -> bytes:
-    """Return the content of a scene without cached results: a key, in any process, for slow
-    results."""
+    """Return the content of a scene without cached results: a key of slow results in any
+    process."""
     return pickle.dumps(replace(scene))
 
 

@@ -104,7 +104,7 @@ class CutScene(ABC):
 
     def _carrier(self, body: str, point: str) -> tuple[str, float]:
         """Return the body that carries a named point of a body, and the lean of the body's frame
-        against it [rad]."""
+        [rad]."""
         if body not in self.scene.elastic:
             return body, 0.0
         line = line_of(self.scene, body)

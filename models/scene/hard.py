@@ -54,8 +54,8 @@ def fourbar_by_coupler(
 
 
 def slider_crank(name: str, crank_m: float, rod_m: float, *, source: str) -> Scene:
-    """A central slider-crank A B C along the x-axis, with a block of half a kilogram per metre of
-    the crank."""
+    """A central slider-crank A B C along the x-axis, with a block of 0.5 kg per metre of the
+    crank."""
     return _scene(name, source, "A = [0.0, 0.0]", _slider_crank_bodies(crank_m, rod_m))
 
 

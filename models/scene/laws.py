@@ -12,8 +12,8 @@ import numpy as np
 from models.array import Array
 
 MOST_TURNS = 1e7
-"""Limit at which 9 digits of the angle within a turn are left: times beyond it are dates, or in
-another unit."""
+"""Limit at which 9 digits of the angle within a turn are left: times beyond it are dates, or not in
+s."""
 
 
 class Law(ABC):

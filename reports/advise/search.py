@@ -34,8 +34,7 @@ WORDS = {
 @dataclass(frozen=True)
 class TriedRun:
     """Result of a run. ``error`` is the error of place, over all its samples, infinite where it did
-    not end well; ``growth`` is its ratio of the second half of the turns to the first, NaN if
-    unknown."""
+    not end well; ``growth`` is its ratio of the second half of the turns to the first, or NaN."""
 
     error: float
     status: str = "ok"
@@ -161,8 +160,8 @@ class _TriedRuns:
 
     def worst(self, substeps: int, *, whole: bool = False) -> Worst:
         """Return the worst of the scenes, or the first that is over the target, unless the
-        ``whole`` is requested; the last worst scene is run first. Raises EndedError where no other
-        step would do."""
+        ``whole`` is requested; the last worst scene is run first. Raises EndedError if no other
+        step helps."""
         here = self.seen.setdefault(substeps, {})
         for scene in sorted(self.demand.scenes, key=lambda s: -self._last.get(s.name, math.inf)):
             if scene.name not in here:

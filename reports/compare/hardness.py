@@ -299,8 +299,7 @@ LEAST_SAMPLES = 8
 LEAST_TURN_RAD = 0.2
 """Turn of the driver below which no error comes to its full size."""
 EVEN = 1e-3
-"""Negligible departure: rounding is far below it, and the errors due to it are below those of
-rounding."""
+"""Negligible departure: rounding is far below it, and its errors are below those of rounding."""
 
 
 @shared

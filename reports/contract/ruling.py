@@ -36,7 +36,7 @@ Answer = Literal["held", "broken", "not tried"]
 
 @dataclass(frozen=True)
 class Ruling:
-    """Result of a clause: the scenes that hold it, its breaches, and the reasons for no trial on
+    """Result of a clause: the scenes that hold it, its breaches, and reasons for no trial on
     others."""
 
     id: str

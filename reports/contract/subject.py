@@ -25,8 +25,7 @@ from sim.run.check import refuse_other_model, rounding_of
 STEPS = 600
 """Default number of steps in a period."""
 ROUNDING = 1e-10
-"""Largest difference of two ways to the same state, over the largest number in it, in double
-precision."""
+"""Largest difference of two ways to a state, over the largest number in it, in double precision."""
 
 
 class NotTriedError(Exception):

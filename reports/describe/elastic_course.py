@@ -1,5 +1,4 @@
-"""A scene with elastic links over time, beside the same scene with rigid ones, for words and
-drawings."""
+"""A scene with elastic links over time, beside one with rigid links, for words and drawings."""
 
 from __future__ import annotations
 
@@ -93,7 +92,7 @@ class ElasticCourse:
 
     @property
     def torques(self) -> tuple[Array, Array] | None:
-        """Torques of the drive with elastic links and with rigid ones [N m], (T,); None without a
+        """Torques of the drive with elastic and with rigid links [N m], (T,); None without a
         drive."""
         acting, rigid = self.motion.forces, self.rigid.forces
         return None if acting is None or rigid is None else (acting.torque, rigid.torque)
@@ -106,8 +105,7 @@ def closely_sampled(scene: Scene, until_s: float) -> Array:
 
 
 def elastic_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
-    """Return a motion at times [s], (T,) in ascending order. Raises CrankcheckError where there is
-    none."""
+    """Return a motion at times [s], (T,) in ascending order. Raises CrankcheckError if none."""
     scene = motion.scene
     words = [elastic_words.described(scene, motion.by), f"start {start_of(motion)}"]
     words += ["shortening left out"] * (not motion.stiffened)

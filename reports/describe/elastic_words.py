@@ -134,8 +134,8 @@ def _over(off: Array, series: Array) -> float:
 
 
 def beam_certainty(motion: elastic_motion.ElasticHistory) -> list[str]:
-    """Return the uncertainty of a motion, in sentences. Raises CrankcheckError where no other can
-    be computed."""
+    """Return the uncertainty of a motion, in sentences. Raises CrankcheckError where it has
+    none."""
     if isinstance(motion.by, Segments):
         return []  # a model of engines, and not the beam
     time_s = np.linspace(0.0, motion.until_s, SAMPLES)

@@ -287,8 +287,7 @@ def free_tables(free: FreeMotion, motion: Motion, width: int) -> list[Table]:
 
 
 def free_notes(motion: FreeMotion, until_s: float) -> list[str]:
-    """Return the uncertainty of the motion up to an instant [s], and events until then, in
-    sentences."""
+    """Return the uncertainty of the motion and events up to an instant [s], in sentences."""
     last = np.array([until_s])
     off, growth = float(motion.error_rad(last)[0]), float(motion.sensitivity(last)[0])
     angle = f"the angle of {motion.scene.driver.link}" if motion.by_dyads else "every link's angle"

@@ -1,2 +1,1 @@
-"""One engine in several versions: an environment for each, the same verification, and the
-changes."""
+"""One engine in several versions: an environment for each, one verification, and the changes."""

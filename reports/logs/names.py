@@ -38,7 +38,7 @@ RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
 
 def meaning(column: str, named: SceneNames, told: str = "") -> kinds.Meaning | str:
     """Return the meaning of a column's name, or the reason for none. A unit ``told`` by the map
-    replaces that in the name. Raises CrankcheckError for units that contradict each other, or their
+    replaces that in the name. Raises CrankcheckError for units that contradict another, or their
     kind."""
     if own := named.own.get(column):
         if not told:

@@ -115,8 +115,7 @@ def _check_place(path: Path, option: str) -> None:
 
 
 def _try_in(folder: Path) -> None:
-    """Make a file there for a moment: in some folders (/proc) none can be, whatever the rights.
-    Raises OSError."""
+    """Make a file there for a moment: in some folders (/proc) none can be. Raises OSError."""
     with tempfile.TemporaryFile(dir=folder):
         pass
 

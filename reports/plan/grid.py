@@ -105,8 +105,8 @@ def grid(study: Study) -> Grid:
 
 
 def _steps(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]]:
-    """Return steps [s] and numbers of steps of a scene. Raises CrankcheckError where it can not be
-    run for so long."""
+    """Return steps [s] and numbers of steps of a scene. Raises CrankcheckError where it is too
+    long."""
     way = way_of(scene)
     steps = [way.counted(scene, each, given) for each in way.lengths(scene, study, given)]
     longest = max(steps, key=lambda step: step[0] * step[1])

@@ -123,8 +123,8 @@ def chosen_engines(names: str | Sequence[str], *, notes: bool = True) -> list[st
 
 def chosen_profiles(names: str | Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:
     """Return profiles with whether they are gated: named ones are; by default `tuned` alone is.
-    Raises CrankcheckError for a profile that one of the engines lacks; the message suggests the
-    near ones."""
+    Raises CrankcheckError for a profile that one of the engines lacks; the message names near
+    ones."""
     names = names_in(names, "profiles")
     for name in names:
         for each in engines:

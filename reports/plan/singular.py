@@ -152,8 +152,8 @@ def refuse_short_tables(scene: Scene, duration_s: float) -> None:
 
 def refuse_forceless(scene: Scene, duration_s: float) -> None:
     """Refuse a scene whose forces are not known at the start and the end of a run. Raises
-    CrankcheckError where nothing has a mass and nothing loads it, or a table of a load does not
-    reach so far."""
+    CrankcheckError where nothing has a mass and nothing loads it, or the table of a load ends
+    before."""
     forces(scene, np.array([0.0, duration_s]), bound=False, skip_dead_points=True)
 
 

@@ -16,8 +16,8 @@ SEGMENTS = 16
 
 
 LEAST_STEPS = 2 * SETTLING
-"""Least steps of a verification. Measured: no shipped scene fails for shortness alone in a run of
-so many steps."""
+"""Least steps of a verification. Measured: no shipped scene fails for shortness alone in so
+many."""
 
 
 @dataclass(frozen=True)

@@ -44,8 +44,7 @@ def output_option(help: str) -> Any:
 
 
 def note_of(field: str, kind: object, note: object, default: object) -> Any:
-    """The annotation of a field as typer takes it; a flag that is False by default has no
-    denial."""
+    """The annotation of a field for typer; a flag that is False by default has no denial."""
     if not isinstance(note, str):
         return note
     return option(note, name_of(field) * (kind is bool and not default))

@@ -27,8 +27,7 @@ FORCES = "reaction_pure"
 
 @dataclass(frozen=True)
 class Score:
-    """A cell of the table: a number as text, and a remark, which is the reason where there is no
-    number."""
+    """A cell of the table: a number as text, and a remark, the reason where there is none."""
 
     number: str = NONE
     remark: str = "not run"

@@ -110,8 +110,8 @@ class Report:
 
     @cached_property
     def over_facets(self) -> FacetReport | None:
-        """Report of cams by contact, each at its finest step; None where no cam has several numbers
-        of facets."""
+        """Report of cams by contact, each at its finest step; None where no cam has several
+        facets."""
         rows = []
         for line in self.lines:
             scene, row = self.scenes[line.scene], line.cells.iloc[-1]

@@ -30,7 +30,7 @@ from reports.stability.matrix import (
 from reports.stability.running import CaseLine, harder
 
 ROUNDING = 1.1
-"""Growth of the largest error up to which another outcome is no change: two processors differ by
+"""Growth of the largest error up to which another outcome is no change: processors differ by
 less."""
 Word = Literal["worse", "better", "not compared"]
 

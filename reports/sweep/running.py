@@ -1,5 +1,5 @@
-"""Run the missing cells of a grid in a store: errors several at a time, then costs one by one; and
-print the result."""
+"""Run the missing cells of a grid in a store: errors in parallel, then costs one by one; and print
+the result."""
 
 from __future__ import annotations
 

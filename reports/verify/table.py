@@ -182,8 +182,7 @@ def _of_forces(checked: Sequence[Checked]) -> Sequence[str]:
 
 
 def _notes(checked: Sequence[Checked]) -> list[str]:
-    """Return the notes on forces, and on free motion, once for a scene: counts may differ by a
-    sample."""
+    """Return notes on forces and free motion, once for a scene: counts may differ by a sample."""
     notes = dict[tuple[str, str], str]()
     for one in checked:
         told = one.cell.with_forces or one.cell.way.noted
@@ -230,8 +229,7 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
 
 
 def _failures(console: Console, failed: Sequence[Checked]) -> None:
-    """Print the failures, cell by cell and with the tried remedies, then the cures of the others,
-    rule by rule."""
+    """Print the failures by cell with the tried remedies, then the cures of the others by rule."""
     for one in failed:
         head = f"{mark(one).plain}  {one.cell.label}"
         show_failed(console, head, titled(one.failures), one.remedy)

@@ -28,8 +28,7 @@ Precision = Literal["double", "single"]
 EPSILON: Mapping[Precision, float] = {"double": 2.0**-52, "single": 2.0**-23}
 """Relative distance of two neighbouring numbers."""
 AT_ROUNDING = 1e-11
-"""A pure error that rounding over a run of thousands of steps explains by itself, with numbers of
-double precision."""
+"""A pure error that rounding explains in a run of thousands of steps, in double precision."""
 ForcesOf = Literal["nothing", "states", "steps"]
 """Forces that an engine reports. States: forces of a state, at every sample. Steps: forces of the
 last step, so that they are NaN at the start of a run."""
@@ -56,7 +55,7 @@ REPORTED = Unreported()
 
 @dataclass(frozen=True)
 class Setting:
-    """An engine setting: its value, and the profile's reason; ``of_beams`` settings act on beams
+    """An engine setting: its value, and the profile's reason; ``of_beams``: it acts on beams
     only."""
 
     value: SettingValue

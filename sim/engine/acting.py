@@ -44,8 +44,7 @@ Push = tuple[float, float, float]
 """A force [N] and a moment [N m]."""
 NONE: Push = (0.0, 0.0, 0.0)
 Frames = Mapping[str, Frame]
-"""Frames of the bodies, with the engine's own origins, and of the ground, at the instant of a
-step's forces."""
+"""Frames of bodies, with the engine's own origins, and ground, at the instant of forces."""
 Value = TypeVar("Value", float, Array)
 
 
@@ -143,8 +142,8 @@ class Course(Generic[Value]):
 
     @property
     def rate(self) -> Value:
-        """Rate there, if not known by the parabola through the last three values, or the line
-        through two."""
+        """Rate there, if not known by the parabola through three values, or the line through
+        two."""
         if self._rate is not None:
             return self._rate
         if len(self._values) < 3:

@@ -1,6 +1,6 @@
 """Sessions of engines of free bodies that divide a step: the driver on the ground is so heavy that
-nothing moves it, and unlike a kinematic body changes its speed within a step; any other driver has
-a motor."""
+nothing moves it, and unlike a kinematic body changes its speed within a step; other drivers have a
+motor."""
 
 import math
 from abc import abstractmethod

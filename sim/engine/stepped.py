@@ -129,8 +129,8 @@ class SteppedSession(ABC):
         return self.before, now, self.pushed.on_bodies, self.acting.on_blocks, rubbed
 
     def acted(self, rows: Sequence[Any], poses: Poses) -> Forces:
-        """Return the forces of samples of `joint_forces`, by default at the instant of the forces
-        of each step."""
+        """Return the forces of samples of `joint_forces`, by default at each step's instant of
+        forces."""
         before, after, *actions = zip(*rows, strict=True)
         steps = StepSeries(np.array(before), np.array(after), *map(by_name, actions))
         for rub in self.rubbing:

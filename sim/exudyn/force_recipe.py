@@ -116,7 +116,7 @@ for k, (time_s, against) in enumerate(driving[:, :2]):
 
 
 def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
-    """Write the program for scenes without loads, springs and friction, at constant speed. See
+    """Write it for scenes without loads, springs, friction, at constant speed. See
     `ForceRecipe`."""
     law = scene.driver.law
     lacking = {

@@ -36,8 +36,7 @@ class MujocoSpoiler:
         _own(session)._model.eq_solimp[:, :2] = held - share
 
     def slip(self, session: Session, by_m: float) -> None:
-        """Move the site of the second body; MuJoCo would ignore the place of a site at the body's
-        origin."""
+        """Move the site of the second body; MuJoCo would ignore a place at the body's origin."""
         model = _own(session)._model
         site = model.eq_obj2id[0]
         model.site_sameframe[site] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
@@ -56,7 +55,7 @@ class MujocoSpoiler:
 
     def block(self, session: Session, opening: Opening, body: str, post: Post) -> None:
         """Write the post into the model and compile it again; post and bars of ``body`` are as hard
-        as the joints."""
+        as joints."""
         own = _own(session)
         chosen = writing(opening.scene, opening.settings, opening.dt_s, opening.drive)
         spec = mujoco.MjSpec.from_string(document.build(opening.scene, opening.state, chosen))

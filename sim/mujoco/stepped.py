@@ -129,8 +129,8 @@ class SteppedModel(ABC):
         return state
 
     def _poses(self, states: Array, at: Array, look: Look | None = None) -> Poses:
-        """Return the poses of logged states, with accelerations by `mj_forward` at each state, on a
-        copy of the data."""
+        """Return the poses of logged states, with accelerations by `mj_forward` at each, on a copy
+        of the data."""
         model, data = self._model, mujoco.MjData(self._model)
         push, control = np.empty((len(states), model.nv)), self._control_at(at) if model.nu else ()
         for k, state in enumerate(states):

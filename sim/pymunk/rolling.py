@@ -30,8 +30,8 @@ from sim.pymunk.native import SpaceBodies
 PARALLEL = 1e-6
 """Least difference of the follower's turning from the cam's, over the cam's."""
 Rolling = tuple[Point, Point, float]
-"""Instant centre of two bodies [m], direction of the force there, and the second body's error along
-it [m]."""
+"""Instant centre of two bodies [m], direction of the force, and the second body's error along
+it."""
 
 
 def mesh(placed: SpaceBodies, gear: Gear) -> pymunk.Constraint:

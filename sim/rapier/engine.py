@@ -200,8 +200,7 @@ class RapierSession(HeavyDriverSession):
 
 
 def rotation(angle: float) -> Any:
-    """Return a rotation in the plane; the package's own functions of angles are in single
-    precision."""
+    """Return a rotation in the plane; the package's own have single precision."""
     return rp.Rotation3(math.cos(0.5 * angle), 0.0, 0.0, math.sin(0.5 * angle))
 
 

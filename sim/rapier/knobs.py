@@ -11,8 +11,7 @@ STEP_US, SUBSTEP_US, JOINT_US = 12.0, 2.0, 0.025
 
 
 def work(scene: Scene, start: State) -> Work:
-    """Return the cost of a step: a part for itself and each sub-step, and the joints once
-    per sweep."""
+    """Return the cost of a step: a part for itself, one a sub-step, and the joints once a sweep."""
     count = joint_count(scene)
 
     def us(settings: Settings) -> float:

@@ -262,8 +262,7 @@ def force_recipe(
 
 
 Remedies = Callable[[Scene, State, Settings], Sequence[Settings]]
-"""Settings to replace some of a complete set that failed, for a scene assembled at a state; the
-cheapest first."""
+"""Settings that may repair a failing set, for a scene assembled at a state; the cheapest first."""
 
 
 def remedies(engine: str, scene: Scene, state: State, settings: Settings) -> Sequence[Settings]:

@@ -171,8 +171,8 @@ class SimbodySession(TreeSession):
         return super().frames(ahead_s)
 
     def _act_now(self) -> None:
-        """Have the loads act as at the present positions, not as in a step; accelerations depend
-        on them."""
+        """Have the loads act as at the present positions, not as in a step; accelerations need
+        them."""
         if self.acting and self.acted_at != self.done:
             self.present.look_ahead(np.array([self.start_s + self.dt * self.done]))
             self.push(self.present.pushes(0, self.frames(0.0)))

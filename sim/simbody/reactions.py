@@ -87,8 +87,7 @@ class _Reactions:
             self.moments[slider.name] = self._scene.longest_m * pushes[1]
 
     def _from_ground(self, bodies: tuple[str, str], row: Array) -> Array:
-        """Return a constraint's force, which Simbody has in the frame of the body that carries
-        both."""
+        """Return a constraint's force, which Simbody has in the frame of the bodies' carrier."""
         first, second = ([*self._carriers(body)] for body in bodies)
         theta = self._paths[next(body for body in first if body in second)].pose.theta
         return np.asarray(

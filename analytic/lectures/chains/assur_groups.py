@@ -103,8 +103,7 @@ MOST_LEFT = 14
 
 @dataclass(frozen=True)
 class DrivenChainJoint:
-    """Joint that may drive: its ``pin`` or ``slider``, and the two bodies that it moves against
-    each other."""
+    """Joint that may drive: its ``pin`` or ``slider``, and the two bodies that it moves."""
 
     base: str
     body: str

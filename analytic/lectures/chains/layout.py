@@ -41,7 +41,7 @@ class Outline:
 
 
 class _Pattern:
-    """Parts of a chain for the cost: edges of links, and pairs of these with each other and with
+    """Parts of a chain for the cost: edges of links, and pairs of these with each other and
     joints."""
 
     def __init__(self, chain: Chain) -> None:

@@ -79,7 +79,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class SignedScene:
-    """Scene of dyads, driven at a crank, whose branches are chosen by signs in the order of
+    """Scene of dyads, driven at a crank, with branches chosen by signs in the order of
     ``dyads``."""
 
     scene: Scene

@@ -227,8 +227,7 @@ of the crossing."""
 @dataclass(frozen=True)
 class Similarity:
     """Map from a link to its image: ``scale`` [1/s or 1/s^2], turned by ``turn_rad``
-    counter-clockwise; for a link that moves without turning the scale is 0, and the image a
-    point."""
+    counter-clockwise; for a link that does not turn the scale is 0, and the image a point."""
 
     scale: float
     turn_rad: float

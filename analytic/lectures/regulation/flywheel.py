@@ -78,8 +78,7 @@ class Approximations:
 @dataclass(frozen=True)
 class WantedFlywheel:
     """Flywheel of ``inertia_kg_m2`` on the driver, with the resulting ``cycle`` of the coefficient
-    of fluctuation ``delta``; ``bare`` is the cycle without it, or None where the machine stops
-    without."""
+    of fluctuation ``delta``; ``bare`` is the cycle without it, None where the machine stops."""
 
     delta: float
     inertia_kg_m2: float
@@ -101,8 +100,7 @@ class WantedFlywheel:
 
 def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywheel:
     """Find the flywheel for a coefficient of fluctuation. Raises CrankcheckError for an invalid
-    coefficient, or one that the machine keeps without a flywheel; no steady cycle with any
-    flywheel."""
+    coefficient, or one that the machine keeps without a flywheel; no steady cycle."""
     _check(delta)
     machine, bare = scene_machine, None
     with suppress(StallError):
@@ -134,8 +132,7 @@ def _check(delta: float) -> None:
 
 
 def _heavy(machine: TurningMachine, delta: float) -> SteadyCycle:
-    """Return the cycle with so large a flywheel that the speed hardly changes: torques are those of
-    constant speed."""
+    """Return the cycle with a very large flywheel: torques are those of constant speed."""
     own = machine.inertia(np.linspace(0.0, machine.cycle_rad, 361))[0]
     inertia = 10.0 * float(np.max(own)) or 1.0
     for _ in range(MOST_TRIES):
@@ -176,8 +173,8 @@ def _classical(heavy: SteadyCycle, delta: float) -> Approximations:
 
 
 def _exact(machine: TurningMachine, delta: float, first: float) -> SteadyCycle:
-    """Return the cycle of the coefficient, by the secant method: 1 / delta is nearly linear in the
-    flywheel."""
+    """Return the cycle of the coefficient, by the secant method: 1 / delta is nearly linear in its
+    inertia."""
     tried: list[tuple[float, SteadyCycle]] = []
     inertia = first
     for _ in range(MOST_TRIES):

@@ -124,7 +124,7 @@ def _check_springs(scene: Scene, whole_rad: float) -> None:
 
 @dataclass(frozen=True, eq=False)
 class TurningMachine:
-    """Scene whose driver turns on, from ``start_rad`` by ``cycle_rad`` in a cycle, to the side
+    """Scene whose driver turns from ``start_rad`` by ``cycle_rad`` in a cycle, to the side
     ``way``."""
 
     scene: Scene

@@ -232,8 +232,7 @@ def _two(
 
 
 def _three(task: CouplerTask, body: CarriedBody) -> list[PoseDyad | PoseSlide]:
-    """Return two dyads for three positions: from moving pivots by circles, from fixed ones by
-    inversion."""
+    """Return two dyads for three positions: moving pivots by circles, fixed ones by inversion."""
     if task.fixed_m is not None:
         return [about_given_pivot(body.poses, complex(*place)) for place in task.fixed_m]
     return [about_circumcentre(body.poses, moving) for moving in _moving(task, body)]

@@ -1,5 +1,4 @@
-"""Tasks near to one without a solution: a number moved no further than needed, or a requirement
-given up."""
+"""Tasks near to one without a solution: a number moved as needed, or a requirement given up."""
 
 import itertools
 from collections.abc import Callable, Iterator
@@ -113,8 +112,8 @@ def _reduced(task: TaskTable) -> Iterator[tuple[str, dict[str, object], int]]:
 
 
 def _pins(task: PositionsTask, number: int) -> list[list[float]]:
-    """Return moving pivots in a position: the given ones, two named points, or the point and one
-    beside it."""
+    """Return moving pivots in a position: given, two named points, or the point and one beside
+    it."""
     (first, angle), (place, turned) = task.poses[0], task.poses[number]
     own = [first + np.exp(1j * angle) * each for each in task.own_points.values()]
     own = [*own, first + 0.5j * (task.poses[-1][0] - first)][:2]

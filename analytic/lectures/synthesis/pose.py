@@ -74,8 +74,7 @@ def pole(first: PlanePose, second: PlanePose) -> complex | None:
 
 
 def circle_through(a: complex, b: complex, c: complex) -> complex | None:
-    """Return the centre of the circle through three points; None where they lie on a line, and it
-    is at infinity."""
+    """Return the centre of the circle through three points; None where they lie on a line."""
     p, q = b - a, c - a
     across = (p.conjugate() * q).imag
     if abs(across) <= 1e-12 * abs(p) * abs(q):
@@ -224,8 +223,7 @@ def _in_turn(angles: Array) -> NDArray[np.bool_]:
 def _in_swing(angles: Array, a: Array, b: Array, c: Array, d: Array) -> NDArray[np.bool_]:
     """Return the mask of swinging cranks that meet their angles (N, K), from the ground's
     direction, in order and within one range: about 0, about pi, or one on either side."""
-    # B is |a - d| from D at angle 0, a + d at pi: beyond the span of coupler and output, or too
-    # near.
+    # B is |a - d| from D at angle 0, a + d at pi: beyond coupler and output, or too near.
     no_pi, no_zero = a + d > b + c, np.abs(a - d) < np.abs(b - c)
     turned = np.where(no_zero, angles % (2.0 * np.pi), angles)
     ways = np.diff(turned, axis=0)

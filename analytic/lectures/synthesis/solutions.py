@@ -98,8 +98,8 @@ FLAT = 1e-6
 
 def held_to_its_limits(one: Examined) -> Examined:
     """Return a mechanism with a note on its output over a turn of the crank; with a fault if it
-    differs from the two positions. A note says where the way is too near to a singular position to
-    have limits."""
+    differs from the two positions. A note says where the way has no limits, too near to a singular
+    position."""
     name = one.proposal.turns_back
     if not name or one.defects or not one.turns_fully or one.least_sine < FLAT:
         return one

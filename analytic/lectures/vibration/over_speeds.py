@@ -85,8 +85,7 @@ class OverSpeeds:
 
     @cached_property
     def critical(self) -> list[CriticalSpeed]:
-        """Critical speeds between them at which an excited mode resonates, the widest band
-        first."""
+        """Critical speeds between them, where an excited mode resonates, the widest band first."""
         found = []
         for one, other in pairwise(self.points):
             for k, (before, after) in enumerate(zip(one.deviations, other.deviations, strict=True)):

@@ -177,8 +177,8 @@ def spectrum(series: Array) -> Array:
 
 @dataclass(frozen=True)
 class SteadyVibration:
-    """Scene with elastic links on its periodic motion. Each property raises CrankcheckError where
-    there is none."""
+    """Scene with elastic links on its periodic motion. Properties raise CrankcheckError without
+    one."""
 
     scene: Scene
     by: Modes

@@ -101,8 +101,8 @@ def _swings(subject: Subject) -> Iterator[str]:
 def _each_spring(
     subject: Subject, check: Callable[[Oscillator, Subject], Iterator[str]]
 ) -> Iterator[str]:
-    """Yield faults of the springs of each kind that an engine can hold: one without sliders has
-    none there."""
+    """Yield faults of the springs of each kind that an engine can hold: on sliders, if it has
+    them."""
     if not subject.engine.applies_springs:
         raise NotTriedError("applies_springs is False: it takes no springs")
     refusals = []

@@ -121,8 +121,7 @@ def _differences(
 
 
 def _faults(rates: list[_Rate], said: float, dt_s: float, what: str, where: str) -> Iterator[str]:
-    """Yield the body whose rate is farthest from its stated instant, and the one that is farthest
-    from the path."""
+    """Yield the bodies whose rates are farthest from the stated instant, and from the path."""
     for kind in ("link", "point"):
         same = [rate for rate in rates if rate.body.startswith(kind)]
         change = max(float(np.sqrt((rate.change**2).mean())) for rate in same)

@@ -1,5 +1,4 @@
-"""The scene of a cam: the cam, its follower on a guide or a pivot, and its closing spring or
-weight."""
+"""The scene of a cam: cam, follower on a guide or a pivot, and closing spring or weight."""
 
 import math
 

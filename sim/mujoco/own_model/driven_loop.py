@@ -152,7 +152,7 @@ def _ends(model: Any, closure: file.ModelClosure) -> set[int]:
 
 def _ties(model: Any, closures: Sequence[file.ModelClosure]) -> Ties:
     """Return the ties by joints and closures; joints that leave a body free in the plane tie
-    nothing."""
+    none."""
     pairs = [tuple(rigid(model, body) for body in each.bodies) for each in closures]
     for root in range(1, model.nbody):
         kinds = [JOINTS[int(model.jnt_type[joint])] for joint in _joints(model, [root])]

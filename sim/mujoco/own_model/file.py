@@ -78,8 +78,7 @@ class ModelClosure:
 
 @dataclass(frozen=True)
 class Coupling:
-    """Any other equality, with the bodies of its one or two sides; it couples coordinates, and
-    closes no loop."""
+    """Any other equality, with the bodies of its one or two sides; it closes no loop."""
 
     index: int
     name: str

@@ -237,8 +237,7 @@ def points(linkage: Linkage, bodies: Container[str]) -> list[NamedPoint]:
 
 
 def nearly(found: Sequence[NamedPoint], linkage: Linkage) -> Iterator[tuple[int, str]]:
-    """Yield links with two points suspiciously near to one another, such as an anchor beside its
-    pin, in words."""
+    """Yield links with two points suspiciously near, such as an anchor beside its pin, in words."""
     limit = NEAR * size(linkage)
     for index, one in enumerate(found):
         for other in found[index + 1 :]:

@@ -191,8 +191,7 @@ class _Course:
         return self.task.input_turn(x), self.task.output_scales(x)
 
     def ripples(self, generator: Generator, sign: float, count: int) -> Ripples | str:
-        """Return the largest tip between each two changes of sign, ``count`` of them; a text where
-        these are fewer."""
+        """Return the largest tip between each two of ``count`` changes of sign; a text if fewer."""
         error = generator.error(self.turns, self.ways, sign)
         if np.isnan(error).any():
             at = self.x[int(np.argmax(np.isnan(error)))]

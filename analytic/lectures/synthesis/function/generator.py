@@ -65,8 +65,7 @@ class Generator(ABC):
 
     @abstractmethod
     def output(self, phi: Array, sign: float | Array) -> Array:
-        """Return the output at input angles [rad], in one of two assemblies (T,); nan where there
-        is none."""
+        """Return the output at input angles [rad], in one of two assemblies (T,); nan for none."""
 
     @abstractmethod
     def slopes(self, phi: Array, output: Array) -> Array:

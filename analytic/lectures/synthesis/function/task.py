@@ -135,8 +135,7 @@ class GivenFunction:
 
 MechanismKind = Literal["fourbar", "slider-crank"]
 COUNTS = (3, 4, 5)
-"""Possible numbers of precision points: a mechanism has as many free numbers, lengths over a scale
-and starts."""
+"""Possible numbers of precision points: a mechanism has as many free numbers: lengths, starts."""
 COINCIDING = 1e-6
 """Distance of coincident precision points, over the range."""
 

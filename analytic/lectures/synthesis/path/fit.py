@@ -201,8 +201,7 @@ APART = 0.02
 
 @dataclass(frozen=True)
 class Round:
-    """One round: of the best ``share`` of the starts, over at most so many points, in at most so
-    many evaluations."""
+    """One round: the best ``share`` of the starts, and most points and evaluations."""
 
     share: float
     points: int

@@ -136,8 +136,7 @@ class PathFit(FourBarCandidate):
 
 @dataclass(frozen=True)
 class PathSearch:
-    """Mechanisms of a search, the nearest to the points first; ``complete`` is True if it ended
-    within its time."""
+    """Mechanisms of a search, the nearest to the points first; ``complete`` if it ended in time."""
 
     fits: tuple[PathFit, ...]
     complete: bool

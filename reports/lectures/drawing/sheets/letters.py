@@ -102,8 +102,7 @@ ROUNDING = 1e-6
 
 @dataclass(frozen=True)
 class Letter:
-    """A text that names one of the places ``at`` (n, 2) [mm], drawn as a symbol of a radius
-    [mm]."""
+    """A text that names one of the places ``at`` (n, 2) [mm], drawn with a radius [mm]."""
 
     text: str
     at: Array
