@@ -125,6 +125,11 @@ def moving_points(scene: Scene) -> list[str]:
     ]
 
 
+def size_of_drawing(scene: Scene, samples: int, more: int = 0) -> int:
+    """Return the characters of displacements at some samples, and of as many ``more`` rows."""
+    return size_of(2 * len(moving_points(scene)) + len(drawn_links(scene)) + more, samples)
+
+
 def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[str, object]:
     """Return the shape of a scene and the reference motion at some times [s], to be embedded.
 

@@ -249,11 +249,10 @@ def _draw(axes: Axes, turn: _Turn, index: int) -> None:
 
 def draw_bodies(
     axes: Axes, scene: Scene, motion: Motion, path: Motion, index: int, line: float
-) -> float:
+) -> None:
     """Draw paths (lines of ``line`` points), guides, blocks, links and pins, without a letter.
 
-    They stand as at sample ``index`` of ``motion``; ``path`` is a whole turn. Returns the size of
-    the moving parts [m].
+    They stand as at sample ``index`` of ``motion``; ``path`` is a whole turn.
     """
     size = shape.size_of_motion(scene, path)
     for name, point in path.points.items():
@@ -281,4 +280,3 @@ def draw_bodies(
         if name in scene.ground:  # on a triangle
             axes.fill(*shape.foot_of(place, size).T, color=INK, alpha=0.75, linewidth=0, zorder=2)
         axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
-    return size

@@ -1,7 +1,7 @@
 """Requested layout of figures: the options of every command that draws some."""
 
 from collections.abc import Callable
-from contextvars import ContextVar
+from contextvars import ContextVar, copy_context
 from dataclasses import dataclass, fields
 from functools import wraps
 from typing import Annotated, Any
@@ -65,11 +65,9 @@ def laid_out(run: Run) -> Run:
             where, option = "--figures" if places else "-o", changed[0].replace("_", "-")
             raise CrankcheckError(f"--{option}: no figure is drawn; give {where} DIR as well")
         _check(request)
-        token = LAYOUT.set(request)
-        try:
-            return run(request, console, progress)
-        finally:
-            LAYOUT.reset(token)
+        own = copy_context()
+        own.run(LAYOUT.set, request)
+        return own.run(run, request, console, progress)
 
     return with_layout
 

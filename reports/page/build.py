@@ -1,6 +1,7 @@
 """Build the page: sections, style, scripts and Plotly, in one file that loads nothing."""
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -157,23 +158,20 @@ def _environment() -> Environment:
     return environment
 
 
-DARK_BY_CHOICE = ':root[data-theme="dark"]'
+BY_CHOICE, BY_SYSTEM = ':root[data-theme="dark"]', ':root:not([data-theme="light"])'
+"""Dark themes of the style sheets."""
 
 
 @cache
 def palette() -> str:
     """Return the style of the colours of engines, and of the dark theme by the system."""
-    light, dark = (
-        " ".join(f"--c{number}: {colour};" for number, colour in enumerate(colours))
-        for colours in (COLOURS, DARK)
-    )
-    others = _asset("page.css").partition(f"{DARK_BY_CHOICE} {{")[2].partition("}")[0]
-    by_system = f':root:not([data-theme="light"]) {{{others}  {dark}\n}}'
-    classes = " ".join(f".c{number} {{ color: var(--c{number}); }}" for number in range(len(DARK)))
-    return (
-        f":root {{ {light} }}\n{DARK_BY_CHOICE} {{ {dark} }}\n"
-        f"@media (prefers-color-scheme: dark) {{ {by_system} }}\n{classes}"
-    )
+    text = ""
+    for theme, colours in ((":root", COLOURS), (BY_CHOICE, DARK)):
+        text += f"{theme} {{ {' '.join(f'--c{n}: {c};' for n, c in enumerate(colours))} }}\n"
+    text += " ".join(f".c{n} {{ color: var(--c{n}); }}" for n in range(len(DARK)))
+    dark = re.findall(rf"{re.escape(BY_CHOICE)} ({{[^}}]*}})", _asset("page.css") + text)
+    by_system = " ".join(f"{BY_SYSTEM} {rule}" for rule in dark)
+    return f"{text}\n@media (prefers-color-scheme: dark) {{ {by_system} }}"
 
 
 def _asset(name: str) -> str:

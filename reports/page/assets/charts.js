@@ -35,6 +35,14 @@ crankcheck.ticks = (values) => {
   return { tickvals, ticktext: tickvals.map(String) };
 };
 
+/** Put the line `cursor` over a diagram at `x`; without one, or outside, it is hidden. */
+crankcheck.putCursor = (chart, cursor, x) => {
+  const { xaxis, yaxis } = chart._fullLayout ?? {};
+  const place = xaxis && x !== null ? xaxis.l2p(x) : NaN;
+  cursor.hidden = !(place >= 0 && place <= xaxis._length);
+  if (!cursor.hidden) Object.assign(cursor.style, { left: `${xaxis._offset + place}px`, top: `${yaxis._offset}px`, height: `${yaxis._length}px` });
+};
+
 crankcheck.chart = (() => {
   const PAPER = 680; // width of a diagram on a printed page
   const { colour } = crankcheck;

@@ -27,17 +27,9 @@
 
   /** The line in the diagram at the time of the drawing. */
   function cursor() {
-    const axes = part("chart")._fullLayout;
-    const line = part("cursor");
-    line.hidden = true;
-    if (!axes?.xaxis || !last || !shown.drawing || course.value === "portrait") return;
-    const { mechanism, position } = last;
-    const place = axes.xaxis.l2p((shown.drawing.until_s * position) / (mechanism.samples - 1));
-    if (!(place >= 0 && place <= axes.xaxis._length)) return;
-    line.hidden = false;
-    line.style.left = `${axes.xaxis._offset + place}px`;
-    line.style.top = `${axes.yaxis._offset}px`;
-    line.style.height = `${axes.yaxis._length}px`;
+    const { mechanism, position } = last ?? {};
+    const there = last && shown.drawing && course.value !== "portrait";
+    crankcheck.putCursor(part("chart"), part("cursor"), there ? (shown.drawing.until_s * position) / (mechanism.samples - 1) : null);
   }
 
   const stage = crankcheck.stage("free", {

@@ -26,19 +26,9 @@
 
   /** The line in the diagram where the drawing's driver stands. */
   function cursor() {
-    const axes = part("chart")._fullLayout;
-    const line = part("cursor");
-    line.hidden = true;
-    if (!axes?.xaxis || !last) return;
-    const { mechanism, position } = last;
-    const turning = shown.drawing.turning;
-    const x = turning ? mechanism.driver(position) : (100 * position) / (mechanism.samples - 1);
-    const place = axes.xaxis.l2p(x);
-    if (!(place >= 0 && place <= axes.xaxis._length)) return;
-    line.hidden = false;
-    line.style.left = `${axes.xaxis._offset + place}px`;
-    line.style.top = `${axes.yaxis._offset}px`;
-    line.style.height = `${axes.yaxis._length}px`;
+    const { mechanism, position } = last ?? {};
+    const at = () => (shown.drawing.turning ? mechanism.driver(position) : (100 * position) / (mechanism.samples - 1));
+    crankcheck.putCursor(part("chart"), part("cursor"), last && at());
   }
 
   // The first screen has the same mechanism, with the same engines.

@@ -8,7 +8,6 @@ from typing import Any
 
 from models.errors import CrankcheckError
 from reports.judge.rules import RULES
-from reports.output.numbers import duration
 from reports.page.sections.errors import DIAGRAMS, SHARES
 from reports.plan.chosen_study import StudyChoice
 from reports.protocol.length import SECONDS
@@ -32,17 +31,15 @@ def known(report: Report, lines: Sequence[Line]) -> dict[str, object]:
     """Return lines with all their cells, to be embedded where none of them is drawn."""
     return words_of(report) | {
         "known": [
-            {"scene": line.scene, **line_facts(report, line)}
-            | {"cells": [cell_facts(line, row) for row in line.cells.to_dict("records")]}
+            {
+                "scene": line.scene,
+                "look": report.look(line).number,
+                "command": command(line),
+                "cells": [cell_facts(line, row) for row in line.cells.to_dict("records")],
+            }
             for line in lines
         ]
     }
-
-
-def line_facts(report: Report, line: Line) -> dict[str, object]:
-    """Return the look of a line, and the command that repeats a cell of it, with the cell's own
-    step behind it."""
-    return {"look": report.look(line).number, "command": _command(line)}
 
 
 def cell_facts(line: Line, row: Mapping[Hashable, Any]) -> dict[str, object]:
@@ -52,17 +49,15 @@ def cell_facts(line: Line, row: Mapping[Hashable, Any]) -> dict[str, object]:
         for name in map(str, row)
         if name.endswith("_pure") and not name.endswith("_limit_pure")
     }
-    is_free = line.way.clock is SECONDS
+    is_free, step = line.way.clock is SECONDS, line.way.clock.step(row)
     return {
         "steps": row["steps_per_turn"],
         "at": f"{row['dt_s' if is_free else 'steps_per_turn']:.10g}",
-        "step": f"dt {duration(row['dt_s'])}"
-        if is_free
-        else f"{row['steps_per_turn']:g} steps a turn",
+        "step": f"dt {step}" if is_free else f"{step} steps a turn",
         "verdict": row["verdict"] if row["status"] == "ok" else f"{row['status']}: {row['reason']}",
         "failed": str(row.get("failed_rules") or "").replace(",", " ").split(),
         "errors": [
-            [*of, float(f"{row[name]:.3g}"), _finite(limit)]
+            [*of, row[name], limit]
             for name, limit in limits.items()
             if (of := _quantity(name)) and math.isfinite(row[name])
         ],
@@ -79,13 +74,9 @@ def _quantity(column: str) -> tuple[str, str] | None:
     return (words, SHARES.get(entry.share, entry.share)) if entry else None
 
 
-def _finite(limit: float) -> float | None:
-    return float(f"{limit:.3g}") if math.isfinite(limit) else None
-
-
-def _command(line: Line) -> str:
-    """Return the command; a variant with settings of its own names them as differences from its
-    profile."""
+def command(line: Line) -> str:
+    """Return the command that repeats a cell of a line, to which its step is added; a variant with
+    settings of its own names them as differences from its profile."""
     first, is_free = line.cells.iloc[0], line.way.clock is SECONDS
     profile, length = str(first["profile"]), float(first["turns"])
     try:

@@ -58,18 +58,14 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
 
 def _sizes(report: Report, scene: Scene) -> dict[str, int]:
     """Return the size of each traced cell of a scene in the page [characters], by key."""
-    rows = (
-        2 * len(moving.moving_points(scene))
-        + len(moving.drawn_links(scene))
-        + CURVES
-        + len(scene.links)
-    )
-    traces = {
-        str(key): report.stored.trace(str(key))
-        for line in report.lines_of(scene.name)
-        for key in line.cells["key"]
+    keys = [str(key) for line in report.lines_of(scene.name) for key in line.cells["key"]]
+    traces = {key: report.stored.trace(key) for key in keys}
+    more = CURVES + len(scene.links)
+    return {
+        key: moving.size_of_drawing(scene, len(one["time_s"]), more)
+        for key, one in traces.items()
+        if one
     }
-    return {key: moving.size_of(rows, len(one["time_s"])) for key, one in traces.items() if one}
 
 
 def scene_words(scene: Scene) -> dict[str, object]:
@@ -131,7 +127,8 @@ class _DrawnScene:
             for key in chosen(line, self.sizes, self.held)
         }
         return {
-            **cell.line_facts(self.report, line),
+            "look": self.report.look(line).number,
+            "command": cell.command(line),
             "floor": "" if parts is None else _floor(parts),
             "cells": [
                 cell.cell_facts(line, row)

@@ -30,17 +30,11 @@ def sizes_of(report: Report, lines: Sequence[Line]) -> dict[str, int]:
     sizes = {}
     for line in lines:
         scene = report.scenes[line.scene]
-        rows = (
-            0
-            if scene is None
-            else 2 * len(moving.moving_points(scene)) + len(moving.drawn_links(scene))
-        )
+        drawn = moving.size_of_drawing(scene, INSTANTS) if scene else 0
         for key in map(str, line.cells["key"]):
             trace = report.stored.trace(key)
             if "phase" in trace:
-                sizes[key] = moving.size_of(rows, INSTANTS) + moving.size_of(
-                    CURVES, len(trace["time_s"])
-                )
+                sizes[key] = drawn + moving.size_of(CURVES, len(trace["time_s"]))
     return sizes
 
 
@@ -60,46 +54,29 @@ class FreeCourses:
         """Return the scene with its drawings; without a drawing where the store has no readable
         text of it, or no run that moved."""
         lines, own = self.report.lines_of(self.name), self.report.of_kind("free")
-        time_s = self._instants(lines)
-        ran = any(str(key) in self.sizes for line in lines for key in line.cells["key"])
-        truth = self._truth(time_s) if ran else None
-        lasts_s = float(time_s[-1])
-        return {
+        keys = [key for line in lines for key in map(str, line.cells["key"]) if key in self.sizes]
+        ends = [float(self.report.stored.trace(key)["time_s"][-1]) for key in keys]
+        lasts_s = max(ends, default=1.0)
+        time_s = np.linspace(0.0, lasts_s, INSTANTS)
+        truth = self._truth(time_s) if ends else None
+        drawn: dict[str, object] = {"drawing": None, "truth": None}
+        if self.scene is not None and truth is not None:
+            driver = truth.links[self.scene.driver.link]
+            courses = np.vstack([driver.theta / math.tau, driver.omega])  # turns, rad/s
+            drawing = moving.drawing(self.scene, time_s, truth) | {"until_s": lasts_s}
+            truths = {"time_s": time_s, "curves": moving.packed(courses)}
+            drawn = {"drawing": drawing, "truth": truths}
+        return drawn | {
             "name": self.name,
-            "drawing": truth and self._drawing(time_s, truth),
             "lasts_ms": float(np.clip(1000.0 * lasts_s, SHORTEST_MS, LONGEST_MS)),
-            "truth": truth and self._driver(time_s, truth),
             "lines": [self._line(line, time_s, truth) for line in lines if line in own],
         }
-
-    def _drawing(self, time_s: Array, truth: Motion) -> dict[str, object]:
-        assert self.scene is not None
-        return moving.drawing(self.scene, time_s, truth) | {"until_s": float(time_s[-1])}
-
-    def _instants(self, lines: Sequence[Line]) -> Array:
-        """Return equal parts of the longest run of a scene."""
-        ends = [
-            float(self.report.stored.trace(str(key))["time_s"][-1])
-            for line in lines
-            for key in line.cells["key"]
-            if str(key) in self.sizes
-        ]
-        return np.linspace(0.0, max(ends, default=1.0), INSTANTS)
 
     def _truth(self, time_s: Array) -> Motion | None:
         try:
             return None if self.scene is None else shape.true_motion(self.scene, time_s)
         except CrankcheckError:
             return None
-
-    def _driver(self, time_s: Array, truth: Motion) -> dict[str, object]:
-        """Return angle [turns] and angular velocity of the driver, over time."""
-        assert self.scene is not None
-        driver = truth.links[self.scene.driver.link]
-        return {
-            "time_s": time_s,
-            "curves": moving.packed(np.vstack([driver.theta / math.tau, driver.omega])),
-        }
 
     def _line(self, line: Line, time_s: Array, truth: Motion | None) -> dict[str, object]:
         steps = dict(zip(line.cells["key"], map(float, line.cells["dt_s"]), strict=True))
