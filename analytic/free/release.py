@@ -3,13 +3,13 @@ compared with a second integration with other nodes; else by those of all bodies
 
 import math
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from analytic.change_points.sign import AT_START
 from analytic.free.chart import Chart, LimitedScene
-from analytic.free.coordinate_history import CoordinateHistory, Doubt, Window
+from analytic.free.coordinate_history import CoordinateHistory, Window
 from analytic.free.free_motion import FreeMotion, LimitPassage
 from analytic.free.integration import Integration
 from analytic.free.machine import Machine
@@ -98,9 +98,8 @@ def _of_one_freedom(scene: Scene, law: Released, until_s: float) -> MachineMotio
     wound = machine.lengths(np.array([u]))
     start = {name: float(q[0]) for name, q in wound.items()}
     history, edges = _integrated(machine, until_s, NODES, (u, v), start)
-    other, _ = _integrated(machine, until_s, OTHERS, (u, v), start)
-    doubt = Doubt.between(history, other)
-    return MachineMotion(scene, until_s, history, doubt, tuple(_passages(history)), tuple(edges))
+    other = partial(_other, machine, until_s, (u, v), start)
+    return MachineMotion(scene, until_s, history, other, tuple(_passages(history)), tuple(edges))
 
 
 def _integrated(
@@ -113,6 +112,13 @@ def _integrated(
     """Return the windows up to a time, and the instants at which the forces are not smooth."""
     going = Integration(machine.scene, gauss(nodes), until_s, machine, *start, wound)
     return going.run(), going.edges_s
+
+
+def _other(
+    machine: Machine, until_s: float, start: tuple[float, float], wound: dict[str, float]
+) -> CoordinateHistory:
+    """Return the windows of the second integration."""
+    return _integrated(machine, until_s, OTHERS, start, wound)[0]
 
 
 def _passages(history: CoordinateHistory) -> Iterator[LimitPassage]:

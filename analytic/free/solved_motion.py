@@ -1,7 +1,7 @@
 """Solved free motions: of one freedom in its driver's angle, or the coordinate in its place; of
 several, or without a closed form, by the equations of motion of all bodies."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
@@ -159,12 +159,13 @@ def _some(bodies: Mapping[str, BodyMotion], index: NDArray[np.intp]) -> dict[str
 @dataclass(frozen=True, eq=False)
 class MachineMotion:
     """Motion of a scene of one freedom (`FreeMotion`): ``history`` is the integration, and
-    ``doubt`` its error."""
+    ``other`` gives that with other nodes, which takes as long: it is made where a bound or an error
+    is requested."""
 
     scene: Scene
     until_s: float
     history: CoordinateHistory
-    doubt: Doubt
+    other: Callable[[], CoordinateHistory]
     passages: tuple[LimitPassage, ...] = ()
     edges_s: tuple[float, ...] = ()
 
@@ -195,7 +196,7 @@ class MachineMotion:
     def at(self, time_s: Array, *, bound: bool = True) -> Motion:
         instants = samples(time_s, "time_s")
         check_within(self.scene, instants, self.until_s)
-        return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
+        return motion_along(self.scene, self.history, self._doubt if bound else None, instants)
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
         """Return as `FreeMotion.outside`, with a constant third rate of the driver."""
@@ -237,7 +238,7 @@ class MachineMotion:
 
     def error_rad(self, time_s: Array) -> Array:
         instants = samples(time_s, "time_s")
-        u, off = self.history.state(instants)[0], self.doubt.at(instants)[0]
+        u, off = self.history.state(instants)[0], self._doubt.at(instants)[0]
         error = np.zeros_like(u)
         for chart, at in self.history.charts_at(instants):
             _, slope, bend = chart.driver(u[at])
@@ -253,6 +254,11 @@ class MachineMotion:
             theta[at], omega[at] = phi, slope * v[at]
             alpha[at] = bend * v[at] ** 2 + slope * a[at]
         return theta, omega, alpha
+
+    @cached_property
+    def _doubt(self) -> Doubt:
+        """The error of the integration."""
+        return Doubt.between(self.history, self.other())
 
     @cached_property
     def _looks(self) -> tuple[Array, Array, Array]:

@@ -42,9 +42,8 @@ def free_truth_until(
     `analytic.free.release`."""
     motion = kept_motion(scene, lasts_s)
     peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
-    law = driver.Released(
-        float(motion.at(np.zeros(1)).links[scene.driver.link].theta[0]), peak, motion.until_s
-    )
+    start = motion.at(np.zeros(1), bound=False).links[scene.driver.link].theta
+    law = driver.Released(float(start[0]), peak, motion.until_s)
     given = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
     numbers = PHASE.criteria[0].tolerance
     budget = min(numbers.coefficient * (peak * dt_s) ** numbers.order, numbers.cap)

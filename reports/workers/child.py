@@ -16,8 +16,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-from sim.own_engine.known import told
-
 Ending = tuple[str, object, bytes]
 """Ending of a job (``done``, ``crashed``), its result or reason, and its exception, pickled: a
 reader of the ending need not know it."""
@@ -38,7 +36,10 @@ def main(memory_bytes: int) -> None:
     threading.Thread(target=_listen, args=(sys.stdin.buffer, jobs), daemon=True).start()
     # Imports of the first function are no part of any cell's time or memory.
     _, own_engines = pickle.loads(jobs.get())
-    told(own_engines)
+    if own_engines:
+        from sim.own_engine.known import told  # most of a child's start, where its job needs less
+
+        told(own_engines)
     at_first = _taken()
     _limit(at_first + memory_bytes)
     send(answers, ("ready", None, b"", False))

@@ -34,15 +34,22 @@ DECLARED = "placing", "in_seconds", "floor", "forces_of", "applies_"
 """Declarations by which a clause does not apply."""
 QUICK = (*FULL, "rapier", "box2d", "dart")
 """Engines that install in a minute."""
-AT_LENGTH = ("EC37", "EC53", "EC54", "EC55", "EC57", "EC61", "EC85", "EC86", "EC92", "EC93", "EC94")
+AT_LENGTH = (
+    "EC37", "EC53", "EC54", "EC55", "EC57", "EC61", "EC71", "EC85", "EC86", "EC92", "EC93", "EC94",
+)  # fmt: skip
 """Clauses that take long in these, on what they share or what others show too."""
+SLOW = "rapier"
+OF_MOTION = ("EC14", "EC41", "EC51", "EC52", "EC56", "EC82", "EC83", "EC84")
+"""Clauses for which `SLOW` runs for half a second each: verdicts on its motion and its forces are
+in tests/sim/test_simple_engines.py, and of its precision there is box2d."""
 
 
 def _cases() -> Iterator[object]:
     """Yield engine, clause and scenes. The shaper has pins, a block on a line that moves, and a
     link that slides."""
     for name, clause in itertools.product(HERE, CLAUSES):
-        if name == FIRST or (name in QUICK and clause not in AT_LENGTH):
+        lengthy = (*AT_LENGTH, *(OF_MOTION if name == SLOW else ()))
+        if name == FIRST or (name in QUICK and clause not in lengthy):
             yield pytest.param(name, clause, ("shaper",))
         yield slowly(name, clause, SCENES, reason="joints of one kind are alike, and engines share")
 

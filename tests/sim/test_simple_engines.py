@@ -8,7 +8,8 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files.reading import find_scene, load_scene, parse_scene, shipped
-from reports.judge.cell import Cell, check
+from reports.compare.free_truth import released_state
+from reports.judge.cell import check
 from reports.plan.requirements import chosen_engines
 from sim.engine.settings import SettingError
 from sim.registry import ENGINES, apart, available, engine
@@ -93,7 +94,7 @@ def test_no_turn_of_a_body_is_lost_between_samples(name: str) -> None:
     }.items():
         text = text.replace(shipped_one, other)
     scene = parse_scene(text, "short.toml")
-    start = Cell(scene, name, "tuned", 2e-4, 3000, drive="free").truth.start
+    start = released_state(scene)
     ends = [
         run(scene, start, name, dt_s=2e-4, steps=3000, every=every, drive="free").motion
         for every in (1, 1500)
