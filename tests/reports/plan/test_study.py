@@ -142,7 +142,7 @@ def test_what_can_not_be_run_is_said_before(options: dict[str, Any], words: str)
         ("s.yaml", "a: [", "not valid YAML"),
         ("s.yaml", "- 1", "a table of scenes, variants and steps_per_turn is needed"),
         ("s.toml", TOML.replace("turns", "truns"), r"truns: unknown key; did you mean turns\?"),
-        ("s.toml", TOML.replace('"pymunk"', "3"), r"variants\.1\.engine"),
+        ("s.toml", TOML.replace('"pymunk"', "3"), r"variants\.2\.engine"),
         ("s.toml", "scenes = []\nvariants = []\nsteps_per_turn = [1]", "variants"),
         ("s.toml", TOML.replace("solref_timeconst_steps = [2, 4]", "dt = []"), r"settings\.dt"),
         ("s.toml", TOML.replace("[2, 4]", "[1, false]"), r"settings\.solref_timeconst_steps"),
