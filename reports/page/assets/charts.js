@@ -142,6 +142,7 @@ crankcheck.chart = (() => {
     });
     addEventListener("afterprint", () => {
       width = undefined;
+      if (seen) Plotly.purge(element); // else it keeps the width
       draw();
     });
     crankcheck.onTheme(draw);

@@ -29,7 +29,7 @@ OPENED = """() => {
   document.querySelectorAll('details').forEach(each => { each.open = true; });
   dispatchEvent(new Event('beforeprint'));
 }"""
-"""Every drawer is opened and every diagram drawn: what is hidden is not checked."""
+"""Every drawer is opened and every diagram drawn, as on paper: what is hidden is not checked."""
 DRAWN = "() => [...document.querySelectorAll('.chart')].every(each => each.querySelector('svg'))"
 
 
@@ -96,6 +96,7 @@ def serious(tab: Tab, path: Path) -> list[str]:
         shown = tab.on(screen).open(path, color_scheme=scheme).page
         shown.evaluate(OPENED)
         shown.wait_for_function(DRAWN)
+        shown.evaluate("() => dispatchEvent(new Event('afterprint'))")
         tab.needs_no_scrolling_aside()
         found += [
             f"{scheme}: {each['id']}: {node['html'][:120]}"

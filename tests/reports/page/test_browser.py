@@ -187,10 +187,14 @@ def test_curves_that_coincide_are_counted(page: Page) -> None:
 def test_drawers_are_open_on_paper(page: Page) -> None:
     closed = "() => document.querySelectorAll('details:not([open])').length"
     before = page.evaluate(closed)
+    width = "document.getElementById('precision-chart')._fullLayout.width"
+    wide = page.evaluate(width)
     page.evaluate("() => dispatchEvent(new Event('beforeprint'))")
+    page.wait_for_function(f"() => {width} < {wide}")
     assert page.evaluate(closed) == 0 < before
     page.evaluate("() => dispatchEvent(new Event('afterprint'))")
     assert page.evaluate(closed) == before
+    assert page.evaluate(width) == wide
 
 
 def test_tables_sort_by_their_numbers_up_and_down_and_are_filtered(page: Page) -> None:
