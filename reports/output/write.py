@@ -64,7 +64,7 @@ MARKS = (b"crankcheck", b"<!-- Planar: in the x-y plane")
 TABLES = (b"scene,", b"fault,", b"turned_rad,", b"# Known failures", b'"""Reactions ')
 """First bytes of what commands write: of files with a mark, of which a model has the second; and of
 CSV, known failures and recipes, which have none."""
-LOG = re.compile(rb"time_s,([^,]+)_theta_rad,\1_omega_rad_s\b")
+LOG = re.compile(rb"time_s,(?:velocity_time_s,)?([^,]+)_theta_rad,\1_omega_rad_s\b")
 """First columns of a log; one of a user's own is hardly written so."""
 EDITED = ("--write", "--write-map", "--write-scene")
 """Options of scenes and maps, which their owner edits."""

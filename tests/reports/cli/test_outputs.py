@@ -121,6 +121,7 @@ def test_a_file_that_no_command_wrote_is_not_written_over(line: str, place: Path
 AGAIN = [
     "flywheel mine.toml --delta 0.02 -o fly.csv --write fly.toml",
     f"run mine.toml {COARSE} -o log.csv",
+    f"run mine.toml {COARSE} --engine pymunk -o of_pymunk.csv",
     "export mine.toml -o loop.xml",
     "recipe forces --engine mujoco -o forces.py",
 ]
