@@ -49,7 +49,10 @@ def validated(
 
 def _line(model: type[BaseModel], prefix: str, fault: ErrorDetails) -> str:
     kind, message = fault["type"], fault["msg"]
-    places = (part + 1 if isinstance(part, int) else part for part in fault["loc"])
+    loc = fault["loc"]
+    if kind == "invalid_key":  # a number here is no place in a list
+        loc = (*loc[:-1], str(loc[-1]))
+    places = (part + 1 if isinstance(part, int) else part for part in loc)
     parts = [part for part in map(str, places) if not part.startswith(OF_PYDANTIC)]
     key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
     if kind == "missing":

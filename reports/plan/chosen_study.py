@@ -37,7 +37,7 @@ class StudyChoice:
         numbers = {"--steps-per-turn": self.steps_per_turn, "--dt": self.dt_s}
         numbers |= {"--segments": self.segments, "--facets": self.facets}
         numbers |= {"--turns": [self.turns or 0.0], "--duration": [self.duration_s or 0.0]}
-        words = {name: ",".join(f"{n:g}" for n in own if n) for name, own in numbers.items()}
+        words = {name: ",".join(f"{n:.12g}" for n in own if n) for name, own in numbers.items()}
         words |= {"--springs": ",".join(self.springs), "--study": str(study or "")}
         options = [(name, text) for name, text in words.items() if text]
         options += [("--engine", name) for name in self.engines]

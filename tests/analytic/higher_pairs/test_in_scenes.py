@@ -167,5 +167,5 @@ def test_trains_that_do_not_move_are_refused() -> None:
     with pytest.raises(StructureError, match="mobility"):
         analyse(_with(planetary, extra=extra))
     five = load_scene("geared-five-bar")
-    with pytest.raises(CrankcheckError, match="back after 199 turns"):
+    with pytest.raises(CrankcheckError, match="return after 199 turns"):
         solve(_with(five, pair=replace(five.gears["pair"], teeth=(40, 199))), TIMES)

@@ -76,7 +76,7 @@ def test_lengths_are_read_from_a_scene() -> None:
 @pytest.mark.parametrize("rod", ["A", "E"])
 def test_two_links_that_stand_still_are_no_four_bar_and_pass_no_change_point(rod: str) -> None:
     scene = parse_scene(STILL.format(rod=rod, rocker="D"), "test")
-    with pytest.raises(StructureError, match="still: not a four-bar; rod and rocker hang between"):
+    with pytest.raises(StructureError, match="still: not a four-bar; rod and rocker lie between"):
         FourBar.of(scene)
     motion = solve(scene, np.linspace(0.0, 1.0, 100))
     assert motion.crossings == ()

@@ -120,8 +120,8 @@ def test_speeds_that_are_stated_are_there_to_the_bit() -> None:
 
 @pytest.mark.parametrize(("law", "theta", "clockwise", "message"), [
     (Oscillating(0.0, 0.5, 1.0), 0.6, False, r"swings from -28\.6479 to 28\.6479 deg"),
-    (Accelerating(0.0, 2.0, 9.0), -1.0, False, r"comes to the same driver angle at 302\.704 deg"),
-    (Accelerating(0.0, 2.0, -9.0), 1.0, False, r"comes to the same driver angle at -302\.704 deg"),
+    (Accelerating(0.0, 2.0, 9.0), -1.0, False, r"reaches the same driver angle at 302\.704 deg"),
+    (Accelerating(0.0, 2.0, -9.0), 1.0, False, r"reaches the same driver angle at -302\.704 deg"),
     (Accelerating(0.0, 2.0, 9.0), 1.0, True, "does not turn clockwise there"),
     (SpeedChange(0.0, 1.0, 2.0, 0.1, 0.1), 1.0, False, "without a speed at an angle"),
 ])  # fmt: skip

@@ -51,7 +51,7 @@ def test_seconds_may_be_a_fraction(line: str, monkeypatch: pytest.MonkeyPatch) -
     for text, number in {"1/60": 1 / 60, "1e-3/4": 2.5e-4, "0.02": 0.02}.items():
         assert vars(asked(monkeypatch, line.format(text)))["dt_s"] == number
     for wrong in ("1/0", "1/", "/60", "1/60/2", "a", "60 Hz"):
-        refused(crank(*(word.format(wrong) for word in line.split())), "no number of seconds")
+        refused(crank(*(word.format(wrong) for word in line.split())), "not a number of seconds")
 
 
 def test_every_option_reaches_its_field(monkeypatch: pytest.MonkeyPatch) -> None:

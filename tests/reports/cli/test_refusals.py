@@ -96,7 +96,7 @@ MISTAKES: dict[str, str | Sequence[str]] = {
     f"centres {COUPLER}": "this scene's is pin B of crank and coupler",
     "centres triad-platform": "a group of class III about plate",
     f"flywheel {COUPLER} --delta 0.1": "needs a driver that is a link",
-    f"solve {PISTON} --family crank=0.1,0.11 -o a.html": "--family takes",
+    f"solve {PISTON} --family crank=0.1,0.11 -o a.html": "--family needs",
     f"graph {PISTON} --of rod --over angle": "slider C, which has no angle; use --over time",
     FAMILY.replace("lecture-1", "elastic"): "has elastic links",
     f"{FAMILY} --at-deg 3": "--family with --at-deg",

@@ -81,7 +81,7 @@ OF_SCHEMES = [
     (FOURBAR.replace('"rocker"], kind', '"roker"], kind', 1), "no link roker; did you mean"),
     (FOURBAR.replace('["ground", "crank"]', '["crank", "crank"]'), "found crank twice"),
     (FOURBAR.replace("at_m = [0.0, 0.0]", "at_m = [0.0, 0.0, 0.0]"), "planar schemes have 2"),
-    (FOURBAR.replace("[0.0, 0.0]", "[0.0, 0.0], axis = [0, 1]"), "axis: not of a pin joint"),
+    (FOURBAR.replace("[0.0, 0.0]", "[0.0, 0.0], axis = [0, 1]"), "axis: not for a pin joint"),
     (FOURBAR.replace('"rocker"]', '"rocker", "rod"]', 1), "leads from ground to rod; join it"),
     (FOURBAR.replace('"rocker"]', '"ground"]', 1), "ground is always there"),
     (FOURBAR.partition("[joints]")[0], "joints: missing"),
@@ -139,5 +139,5 @@ def test_orders_are_fitted_and_the_log_of_an_engine_ends_in_its_own_error(tmp_pa
     assert first[0] == f"{sheet}:"
     assert (last[0], last[1]) == ("order", "1.99")
     assert last[3:] == ["-"] * 4  # of the log, in 96 parts: its own error is most of it
-    assert "down to its own" in " ".join(floor)
+    assert "approach its own" in " ".join(floor)
     assert "reference, omega: order 1.99" in sheet.read_text(encoding="utf-8")

@@ -66,8 +66,8 @@ FREE_LABELS = {
     "mechanism": ("integrated", "x [m]"),
 }
 FAULTS = {
-    "--scene slotted-levr: no such scene here; did you mean slotted": (["slotted-levr"], []),
-    "--only profil: no such figure here; did you mean profile": ([], ["profil"]),
+    "--scene slotted-levr: found no such scene; did you mean slotted": (["slotted-levr"], []),
+    "--only profil: found no such figure; did you mean profile": ([], ["profil"]),
     "leave out --scene": ([SCENES[0]], ["profile"]),
     "for free scenes": ([], ["free-motion"]),
 }

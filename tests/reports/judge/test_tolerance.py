@@ -83,7 +83,7 @@ def test_tolerances_are_read_one_by_one_or_with_commas() -> None:
         ("angle=0", ["not a number above 0"]),
         ("angle=nan", ["not a number above 0"]),
         ("angle=inf", ["not a number above 0"]),
-        ("angel=1e-4", ["'angel' is no quantity", "did you mean angle"]),
+        ("angel=1e-4", ["'angel' is not a quantity", "did you mean angle"]),
         ("zzz=1", ["use one of drive, angle"]),
     ):
         with pytest.raises(CrankcheckError) as caught:

@@ -243,7 +243,7 @@ def theirs(path: Path) -> None:
         (notes, "holds something else; name a new file"),
         (shop, "holds something else; name a new file"),
         (theirs, "Optuna file with the study 'theirs'"),
-        (os.mkfifo, "no plain file; name a new file"),  # and it is not waited for
+        (os.mkfifo, "not a plain file; name a new file"),  # and it is not waited for
     ],
 )
 def test_other_files_are_refused_whole(make: Callable[..., None], words: str, path: Path) -> None:

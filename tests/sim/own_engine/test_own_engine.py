@@ -81,7 +81,7 @@ def test_what_is_not_to_be_found_is_told_with_what_would_work(text: str, words: 
     ("import nothing_there", r"ModuleNotFoundError: No module named 'nothing_there'"),
     ("def", r"SyntaxError: invalid syntax \(faulty.py, line 2\)"),
     ("raise SystemExit(3)", r"SystemExit: 3 \(faulty.py, line 2\)"),
-    ("raise ValueError('one\\ntwo')", r"ValueError: one \(faulty.py, line 2\); mend that"),
+    ("raise ValueError('one\\ntwo')", r"ValueError: one \(faulty.py, line 2\); correct that"),
 ])  # fmt: skip
 def test_a_module_that_fails_is_told_in_one_line(folder: Path, line: str, words: str) -> None:
     (folder / "faulty.py").write_text(f"\n{line}\n")
@@ -184,7 +184,7 @@ def test_what_breaks_the_contract_at_run_is_told_with_its_place(
     spelled = wrong(folder, old, new)
     with pytest.raises(BrokenContractError, match=words) as raised:
         ran(spelled)
-    assert "`crankcheck engines check faulty_penalty:ENGINE` says" in str(raised.value)
+    assert "`crankcheck engines check faulty_penalty:ENGINE` prints" in str(raised.value)
 
 
 def test_what_is_raised_while_it_runs_is_a_row(folder: Path) -> None:

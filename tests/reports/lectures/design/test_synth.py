@@ -43,7 +43,7 @@ def test_solutions_and_proof_are_written_and_what_was_left_there_is_told(tmp_pat
         (tmp_path / name).write_text("x = 1\n", encoding="utf-8")
     result = synth("coupler", "three-positions", "--prove", "-o", str(tmp_path))
     assert result.exit_code == 0, result.output + result.stderr
-    assert "2 mechanisms looked at, 2 examined, 2 without a defect" in result.output
+    assert "2 mechanisms tried, 2 examined, 2 without a defect" in result.output
     assert "PROVEN" in result.output
     told = f"left there by an earlier run: {', '.join(left)}"
     assert flat(result.output).endswith(told)
