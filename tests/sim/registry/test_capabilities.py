@@ -91,9 +91,7 @@ def test_a_package_that_can_not_be_imported_is_no_missing_one(
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(registry, "ENGINES", {"broken": "broken_engine"})
     monkeypatch.setenv("BRKN_GL", "foo")
-    words = (
-        "brkn can not be imported here: RuntimeError: no screen; check BRKN_GL=foo, or install"
-    )
+    words = "brkn can not be imported here: RuntimeError: no screen; check BRKN_GL=foo, or install"
     with pytest.raises(EngineError, match=words):
         engine("broken")
     (entry,) = registry.available()
