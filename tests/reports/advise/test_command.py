@@ -19,7 +19,7 @@ from tests.worlds.bare import BARE
 from tests.worlds.command_line import crank, flat, refused
 from tests.worlds.in_process import in_this_process
 
-DT_S, SPEED, TURNS, TARGET = 0.0166667, 10.0, 3.0, 1e-3
+DT_S, SPEED, TURNS, TARGET = 0.0166667, 10.0, 2.0, 1e-3
 Told = tuple[Result, Mapping[str, Any]]
 LINE = ["--dt", DT_S, "--speed", SPEED, "--target", TARGET]
 
@@ -84,7 +84,7 @@ def test_its_promises_are_printed_and_held_by_runs_of_both_engines(told: Told) -
     for one in best(content):  # for long, and at finer steps
         n = one["promise"]["substeps"]
         for scene in scenes:
-            assert place_error(scene, one, DT_S / n, 5 * TURNS) <= TARGET
+            assert place_error(scene, one, DT_S / n, 3 * TURNS) <= TARGET
             for finer in (n + 1, 2 * n):
                 assert place_error(scene, one, DT_S / finer) <= TARGET
     text = flat(result.stdout)
@@ -93,7 +93,7 @@ def test_its_promises_are_printed_and_held_by_runs_of_both_engines(told: Told) -
         assert f"{one['engine']} {one['name']}" in text
     for one in best(content):
         assert one["snippet"] in result.stdout
-    assert "37.7 in a turn; error of place up to 0.001 over 3 turns" in text
+    assert "37.7 in a turn; error of place up to 0.001 over 2 turns" in text
     assert "takes your own" in text
     assert f"mujoco {content['provenance']['mujoco']}" in text
 
