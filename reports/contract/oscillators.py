@@ -18,8 +18,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.multibody.multibody_motion import Baumgarte
-from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.motion import State
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
@@ -207,6 +205,10 @@ def centres(scene: Scene, state: State, duration_s: float, steps: int) -> Mappin
     steps : int
         Steps of the integration.
     """
+    # scipy, which takes longer to import than most clauses to check, each in a process apart
+    from analytic.multibody.multibody_motion import Baumgarte
+    from analytic.multibody.release_multibody import release_multibody
+
     heavy = replace(scene, loads={}, springs={}, friction={})
     plain = Baumgarte(0.0, 0.0, step_s=duration_s / steps)
     free = release_multibody(heavy, duration_s, plain, near=state)
