@@ -116,7 +116,7 @@ def many(quick: int) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("count", [quick, more, most])
 
 
-@many(240)
+@many(400)
 @pytest.mark.parametrize("kind", KINDS)
 def test_error_never_exceeds_the_bound(kind: str, count: int) -> None:
     found = _many(kind, count)

@@ -1,5 +1,6 @@
 """`crankcheck explain`: rules, clauses, and a cell whose parts are found a second way."""
 
+import math
 import re
 
 import numpy as np
@@ -7,9 +8,11 @@ import pytest
 
 import crankcheck
 from reports.contract.clauses import CLAUSES
+from reports.judge.known import KnownFailure
 from reports.judge.rules import RULES
 from reports.requests.explain import HELPS
 from tests.worlds.command_line import crank, flat, refused, told
+from tests.worlds.tiers import slow
 
 CELL = "explain fourbar-lecture-1 --engine mujoco --steps-per-turn 360"
 
@@ -89,6 +92,18 @@ def test_a_tuned_cell_has_no_floor_but_one_that_is_not_excluded_and_no_other_set
     assert "profile tuned has" not in output
 
 
+def test_a_known_failure_is_named_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = KnownFailure(
+        scene="fourbar-lecture-1", engine="mujoco", profile="as-shipped", reason="its joints give way",
+        rules=dict.fromkeys(RULES, math.inf),
+    )  # fmt: skip
+    monkeypatch.setattr("reports.requests.explain.known_of", lambda *_: [known])
+    output = flat(told(f"{CELL} --profile as-shipped"))
+    assert "known failure: " in output
+    assert "known: its joints give way" in output
+
+
+@slow("seconds: a run that diverges, and the shipped file")
 def test_a_cell_of_the_shipped_known_failures_says_so_with_its_reason() -> None:
     output = flat(told("explain shaper-cutting --engine pymunk"))
     assert "tuned, dt 0.002778 s: known known failure: CC101, known: its iterations" in output

@@ -83,7 +83,7 @@ def test_noise_is_not_fitted_and_not_made_worse(timed: bool) -> None:
 
 def test_the_mechanisms_are_distinct_and_the_nearest_is_the_first() -> None:
     task = random_path(0, 12, timed=False, closed=True, noise=0.02)
-    fits = generate(task, count=4, starts=8).fits
+    fits = generate(task, count=4, starts=12).fits
     assert len(fits) > 2
     errors = [round(fit.rms_m / task.radius_m, 6) for fit in fits]
     assert errors == sorted(errors)
