@@ -94,8 +94,8 @@ def test_a_tuned_cell_has_no_floor_but_one_that_is_not_excluded_and_no_other_set
 
 def test_a_known_failure_is_named_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     known = KnownFailure(
-        scene="fourbar-lecture-1", engine="mujoco", profile="as-shipped", reason="its joints give way",
-        rules=dict.fromkeys(RULES, math.inf),
+        scene="fourbar-lecture-1", engine="mujoco", profile="as-shipped",
+        reason="its joints give way", rules=dict.fromkeys(RULES, math.inf),
     )  # fmt: skip
     monkeypatch.setattr("reports.requests.explain.known_of", lambda *_: [known])
     output = flat(told(f"{CELL} --profile as-shipped"))
