@@ -47,7 +47,7 @@ FLOORS: Mapping[str, str] = {
     "analytic": """
         lectures
         elastic
-        free
+        free gradients
         mechanism forces
         kinematics
         prepared

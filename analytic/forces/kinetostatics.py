@@ -141,8 +141,8 @@ def _undetermined(structure: Structure) -> str:
 
 
 def _check_loaded(scene: Scene) -> None:
-    masses = [link.mass_kg for link in scene.links.values()]
-    masses += [slider.mass_kg for slider in scene.sliders.values()]
+    masses = [link.mass_kg or link.inertia_kg_m2 for link in scene.links.values()]
+    masses += [slider.mass_kg or slider.inertia_kg_m2 for slider in scene.sliders.values()]
     rubs = any(isinstance(one, ConstantFriction) for one in scene.friction.values())
     if not scene.loads and not scene.springs and not any(masses) and not rubs:
         raise CrankcheckError(

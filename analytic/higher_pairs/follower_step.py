@@ -98,23 +98,25 @@ class FollowerStep:
         )  # fmt: skip
 
 
-def lift_errors(pair: CamPair, cam: BodyKinematics, carrier: BodyKinematics) -> list[Real]:
-    """Return bounds of the lift and its first two derivatives: those of the law's angle by the
-    largest next derivative, jumps of the law beside it, and the rounding of the law."""
+def lift_errors(
+    pair: CamPair, cam: BodyKinematics, carrier: BodyKinematics, orders: int = 3
+) -> list[Real]:
+    """Return bounds of the lift and its derivatives, so many ``orders``, 4 at most: those of the
+    law's angle by the largest next derivative, jumps of the law beside it, and its rounding."""
     assert cam.error is not None
     assert carrier.error is not None
     law, one, other = pair.profile.law, angle_of(cam), angle_of(carrier)
     off = cam.error.theta + carrier.error.theta
     off = off + 3 * EPS * (np.abs(one) + np.abs(other) + abs(pair.start_rad) + 7.0)
-    peaks = [max(map(abs, each)) for each in law.extremes]
+    peaks = [*(max(map(abs, each)) for each in law.extremes), law.fourth_at_most]
     narrow = 0.5 * min(np.diff(law.knots_rad))
-    away = [np.zeros_like(off) for _ in range(3)]
+    away = [np.zeros_like(off) for _ in range(orders)]
     for jump in law.jumps:
         phi = pair.law_angle(one, other) - jump.angle_rad
         near = np.abs(np.remainder(phi + np.pi, 2.0 * np.pi) - np.pi) <= off
-        for n, size in enumerate((jump.lift, jump.velocity, jump.acceleration)):
+        for n, size in enumerate(jump[1 : 1 + orders]):
             away[n] = away[n] + np.where(near, abs(size), 0.0)
     return [
         peaks[n + 1] * off + away[n] + 64 * EPS * peaks[0] / narrow**n
-        for n in range(3)
+        for n in range(orders)
     ]  # fmt: skip

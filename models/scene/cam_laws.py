@@ -320,6 +320,13 @@ class CamLaw:
         return float(min(map(np.min, found))), float(max(map(np.max, found)))
 
     @property
+    def fourth_at_most(self) -> float:
+        """Bound of the fourth derivative by the cam's angle."""
+        *terms, size, rate, _, half = np.abs(self._pieces[1])
+        steep = sum(math.perm(k, 4) * c for k, c in enumerate(terms)) + size * rate**4
+        return float(np.max(steep / half**4))
+
+    @property
     def stroke(self) -> float:
         """Difference of the largest and the least lift [m or rad]."""
         low, high = self.extremes[0]

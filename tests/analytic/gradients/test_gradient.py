@@ -1,0 +1,184 @@
+"""Gradients of the reference against differences of the mechanism in fifty digits and more."""
+
+import math
+import zlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.forces.kinetostatics import forces
+from analytic.gradients.dimensions import dimensions, with_dimensions
+from analytic.gradients.gradient import Gradient, angle_gradient, gradient, masses
+from analytic.kinematics import solve
+from models.array import Array
+from models.errors import CrankcheckError, ReachError
+from models.files.assemble import scene_text
+from models.files.reading import load_scene, parse_scene, shipped
+from models.motion import each_array
+from models.scene import Scene
+from models.scene.loads import CoulombFriction
+from tests.analytic.dyads.test_redundant import parallelogram
+from tests.analytic.gradients.differences import differences
+from tests.analytic.gradients.drawn import ALL, drawn
+from tests.analytic.test_bounds import errors, over
+from tests.worlds.strategies import OF_EACH_KIND
+from tests.worlds.tiers import at_length, few, slowly
+
+NOTHING = 1e-18
+"""Error of the differences themselves, of what is 0."""
+SOME = ["sixbar-watt", "shaper", "tangent"]
+
+
+def shares(found: Gradient, name: str, index: int = 0) -> Array:
+    """Errors over bounds of everything that moves, by one dimension (n, 3)."""
+    exact, own = differences(found.scene, found.motion, index, name), found.by[name]
+    rows = []
+    for kind in ("links", "points", "sliders"):
+        for key, wanted in getattr(exact, kind).items():
+            mine, bound = vars(getattr(own, kind)[key]), vars(getattr(own.bound, kind)[key])
+            if kind == "points":
+                x, y = ({k: v[:, axis] for k, v in mine.items()} for axis in (0, 1))
+                ends = (
+                    errors(w, v, index, nothing=NOTHING) for w, v in ((wanted.x, x), (wanted.y, y))
+                )
+                off = list(map(math.hypot, *ends))
+            else:
+                off = errors(wanted, mine, index, nothing=NOTHING)
+            rows.append(over(off, bound, index))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("near", [False, True], ids=["anywhere", "near a singular position"])
+@pytest.mark.parametrize(
+    "count",
+    [1, slowly(10, reason="rare shapes"), at_length(220, reason="ten thousand mechanisms")],
+)
+@pytest.mark.parametrize("form", few(ALL, OF_EACH_KIND, "one of each kind of dyad shows it"))
+def test_no_bound_is_broken(form: str, count: int, near: bool) -> None:
+    rng = np.random.default_rng([zlib.crc32(form.encode()), near])
+    for _ in range(count):
+        found = gradient(drawn(form, rng, near=near), np.zeros(1))
+        for name in rng.choice(list(found.by), 2, replace=False):
+            assert shares(found, str(name)).max() <= 1.0, (name, found.scene)
+
+
+@pytest.mark.parametrize("name", few(shipped(), SOME, "scenes of the same dyads"))
+def test_no_bound_is_broken_in_shipped_scenes_and_bounds_say_something(name: str) -> None:
+    scene = load_scene(name)
+    found = gradient(scene, np.array([0.1, 0.63]) * scene.driver.law.period_s)
+    rng = np.random.default_rng(4)
+    for one in rng.choice(list(found.by), 3, replace=False):
+        assert shares(found, str(one), 1).max() <= 1.0, one
+        largest = [np.abs(m.omega).max() for m in found.by[one].links.values()]
+        bounds = [m.omega.max() for m in found.by[one].bound.links.values()]
+        assert max(bounds) <= 1e-9 * max(1.0, *largest)
+
+
+def test_nothing_is_certain_in_a_dead_point_and_names_of_dimensions_are_those_of_links() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    assert list(dimensions(scene)) == ["ground", "crank", "coupler", "rocker", "driver.angle"]
+    scene = with_dimensions(scene, {"ground": 3.0, "crank": 2.0, "coupler": 3.0, "rocker": 2.0})
+    start = replace(scene.driver.law, start_rad=0.0)  # all links in line
+    scene = replace(scene, driver=replace(scene.driver, law=start))
+    bound = gradient(scene, np.zeros(1), "crank").by["crank"].bound
+    assert bound.links["rocker"].omega[0] == math.inf
+    assert bound.links["crank"].omega[0] == 0.0
+
+
+def other(scene: Scene, name: str, by: float) -> Scene:
+    """A scene with gears or cams, one of its dimensions changed, as its file says it."""
+    one = dimensions(scene)[name]
+    if name.endswith(".base"):
+        pair = scene.cams[name.removesuffix(".base")]
+        cam = replace(pair, profile=replace(pair.profile, base_m=one.value + by))
+        return parse_scene(scene_text(replace(scene, cams={pair.name: cam})), "test")
+    gears = {n: replace(gear, module_m=None) for n, gear in scene.gears.items()}
+    made = with_dimensions(replace(scene, cams={}, gears=gears), {name: one.value + by})
+    return parse_scene(scene_text(replace(made, cams=scene.cams)), "test")
+
+
+@pytest.mark.parametrize("name", [*shipped("gears"), *shipped("cams")])
+def test_gears_keep_their_teeth_and_followers_their_law(name: str) -> None:
+    """Profiles follow from the dimensions; differences of scenes that are read again."""
+    scene, step = load_scene(name), 1e-7
+    times = np.array([0.31, 0.7, 1.13]) * scene.driver.law.period_s
+    found = gradient(scene, times)
+    assert found.by
+    for one, own in found.by.items():
+        if one.startswith("driver."):
+            speed = found.motion.links[scene.driver.link].omega
+            links = found.motion.links.items()
+            exact = {n: {"theta": m.omega / speed, "omega": m.alpha / speed} for n, m in links}
+            size = 1.0
+        else:
+            ahead, back = (solve(other(scene, one, way * step), times).links for way in (1, -1))
+            slopes = each_array(lambda a, b: (a - b) / (2.0 * step), ahead, back)
+            exact = {link: vars(each) for link, each in slopes.items()}
+            size = 1.0 / scene.longest_m
+        for link, each in exact.items():
+            speed = np.abs(found.motion.links[link].omega).max() + 1.0
+            for n, (level, wanted) in enumerate(each.items()):
+                assert np.abs(vars(own.links[link])[level] - wanted).max() < 1e-4 * size * speed**n
+
+
+def test_followers_have_a_derivative_with_a_bound_between_the_knots_of_their_law() -> None:
+    for name in shipped("cams"):
+        scene = load_scene(name)
+        found = gradient(scene, np.array([0.31]) * scene.driver.law.period_s, "driver.angle")
+        (pair,) = scene.cams.values()
+        body = (
+            found.by["driver.angle"].bound.sliders.get(pair.slider)
+            or (found.by["driver.angle"].bound.links[pair.follower])
+        )
+        assert all(0.0 < float(each[0]) < 1e-6 for each in vars(body).values())
+
+
+def test_a_redundant_link_locks_the_dimensions_that_it_fits_alone() -> None:
+    scene = parallelogram(2)
+    found = gradient(scene, np.linspace(0.1, 1.0, 5))
+    assert {"crank", "rocker1", "lever", "ground.A2.x"} <= set(found.locked)
+    assert "driver.angle" in found.by
+    turned = found.by["driver.angle"].links
+    assert np.abs(turned["lever"].theta - 1.0).max() < 1e-9
+    assert np.abs(turned["coupler"].theta).max() < 1e-9
+
+
+def test_forces_are_the_sum_of_masses_times_their_derivatives() -> None:
+    scene = load_scene("slider-crank-offset")
+    scene = replace(scene, loads={}, gravity_m_s2=(0.0, -9.81))
+    times = np.linspace(0.05, 0.9, 7) * scene.driver.law.period_s
+    found, exact = gradient(scene, times, forces=True), forces(scene, times)
+    assert set(found.forces) == set(masses(scene))
+    weights = {}
+    for name, (body, field) in masses(scene).items():
+        holder = scene.links.get(body) or scene.sliders[body]
+        weights[name] = getattr(holder, field)
+    torque = sum(weights[name] * found.forces[name].torque for name in weights)
+    assert np.abs(torque - exact.torque).max() < 1e-12 * np.abs(exact.torque).max()
+    pin = sum(weights[name] * found.forces[name].pins["B"]["crank"] for name in weights)
+    assert np.abs(pin - exact.pins["B"]["crank"]).max() < 1e-12 * np.abs(pin).max()
+
+
+def test_the_angle_at_given_driver_angles_has_the_same_gradient() -> None:
+    scene, times = load_scene("fourbar-lecture-1"), np.linspace(0.0, 0.5, 9)
+    found = gradient(scene, times)
+    names = ["crank", "ground"]
+    own = angle_gradient(scene, found.motion.links["crank"].theta, names, "rocker")
+    assert np.abs(own - [found.by[n].links["rocker"].theta for n in names]).max() < 1e-12
+
+
+def test_faulty_requests_are_refused() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    with pytest.raises(CrankcheckError, match="no dimension, mass or inertia rockr; did you mean"):
+        gradient(scene, np.zeros(1), "rockr")
+    with pytest.raises(CrankcheckError, match="crank: found -1; give a length above 0"):
+        with_dimensions(scene, {"crank": -1.0})
+    with pytest.raises(CrankcheckError, match="belongs to its law"):
+        with_dimensions(scene, {"driver.angle": 1.0})
+    rough = replace(scene, friction={"C": CoulombFriction("C", 0.1, radius_m=0.01)})
+    with pytest.raises(CrankcheckError, match="Coulomb's friction"):
+        gradient(rough, np.zeros(1), "rocker.mass")
+    far = with_dimensions(scene, {"coupler": 2.0})
+    with pytest.raises(ReachError):
+        gradient(far, np.zeros(1))
