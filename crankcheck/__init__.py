@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from reports.judge.rules.rule import Finding
     from reports.lectures.design.synth import Synthesis, synth
     from reports.lectures.machine.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
+    from reports.lectures.machine.sensitivity import SceneGradient, gradient
     from reports.requests.compare import CellVerdict, Comparison, check, compare
     from reports.requests.free_solution import ElasticSolution, FreeSolution
     from reports.requests.judge import LogVerdict, judge
@@ -99,6 +100,7 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
+    "SceneGradient",
     "Simulation",
     "Solution",
     "State",
@@ -111,6 +113,7 @@ __all__ = [
     "compare",
     "cycle",
     "flywheel",
+    "gradient",
     "judge",
     "load_scene",
     "report",
@@ -153,6 +156,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from reports.requests import verify_model as home
             case "MachineCycle" | "MachineFlywheel" | "cycle" | "flywheel":
                 from reports.lectures.machine import regulation as home
+            case "SceneGradient" | "gradient":
+                from reports.lectures.machine import sensitivity as home
             case "report":
                 from reports.requests import report as home
             case "Simulation" | "run":

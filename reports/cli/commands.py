@@ -95,6 +95,11 @@ lead through the requested positions (a defect of branch, circuit or order).""")
 Print where a scene rests under weights, springs and loads.
 Stable or not, in each of its circuits, with the frequency of small oscillations; a driven scene
 as if its driver were free."""),
+    "sensitivity": Command("lectures.machine.sensitivity:SensitivityRequest", REFERENCE, """
+Print which length matters most to the motion, and where.
+
+Effect of each length and angle, at a tolerance and at 1 %, on the follower or on any link, slider
+or point, over a turn; exact to first order, from the gradient of the reference."""),
     "polygon": Command("lectures.drawing.polygon:PolygonRequest", DRAW, """
 Draw the velocity and acceleration polygons of a position.
 Group by group, to scale. Without -o it prints the table of the vectors. With --log the images of

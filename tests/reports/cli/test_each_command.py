@@ -37,6 +37,7 @@ LINES = {
     "vibration fourbar-elastic --modes 2": 0,
     "rotatability fourbar-double-rocker": 0,
     "equilibria fourbar-swing": 0,
+    "sensitivity shaper -o sensitivity.svg": 0,
     "polygon fourbar-lecture-1 --at-deg 60 -o polygon.svg": 0,
     "positions fourbar-lecture-1 -o positions.pdf": 0,
     "centres fourbar-lecture-1 --at-deg 60 -o centres.svg": 0,

@@ -99,6 +99,9 @@ TOLD = {
     "rotatability slider-crank-spring": "other circuits | 2 rod ground swings 0 -195.466 -156.422",
     "equilibria fourbar-swing": "1 yes stable crank -111.653, coupler 49.557, rocker 0.0552469"
     " 2.18636 150.883 1 yes unstable",
+    "sensitivity fourbar-lecture-1": "the angle of rocker over a turn | coupler 250 mm 0.1 mm"
+    " -0.0367 crank at 0 deg 0.032 0.917 | All but the driver at once: 0.119 deg at worst, 0.0607",
+    "sensitivity cam-flat": "disc.base 40 mm | No effect: ground, cam, follower, guide.offset",
     "joint crossed-cylinders": "touches point: a higher pair"
     " | alone class 1, leaves Qx, Qy, Qz, Ty, Tz; a force must keep the two together"
     " | guided class 4, leaves Qz, Tz, where its neighbours leave Qz, Tz",
