@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
+from analytic.dyads.chunk import driver_scale
 from analytic.forces.kinetostatics import forces as forces_of
 from analytic.gradients.dimensions import dimensions
 from analytic.gradients.linearised import Linearised, linearised
 from analytic.gradients.varying import Varying
-from analytic.kinematics import chunks, solve, unit_chunk
+from analytic.kinematics import chunks, solve, solve_driven, unit_chunk
 from analytic.result import Selection
 from models.array import Array, samples
 from models.errors import CrankcheckError, suggestion
@@ -97,13 +98,13 @@ def gradient(
     return Gradient(scene, motion, found, acting, tuple(n for n in wanted if n in locked))
 
 
-def angle_gradient(scene: Scene, theta: Array, by: Iterable[str], link: str) -> Array:
-    """Return the derivatives of a link's angle by dimensions (P, T), without bounds, at driver
-    angles [rad]. Raises as `gradient`."""
-    known = dimensions(scene)
-    wanted = {name: known[name] for name in by}
-    found = linearised(scene, unit_chunk(scene, theta, bound=False), wanted)
-    return np.asarray(found.at(found.places.angle(link)).value[0].real)
+def gradient_at(scene: Scene, drive: Array, by: Iterable[str]) -> tuple[Motion, dict[str, Motion]]:
+    """Return the motion and its derivatives by dimensions at coordinates of the driver [rad or m],
+    (T,), the driver at 1 rad/s, without bounds. Raises as `gradient`."""
+    known, theta = dimensions(scene), drive / driver_scale(scene)
+    motion = solve_driven(scene, drive, np.ones(1), np.zeros(1), bound=False)
+    found = linearised(scene, unit_chunk(scene, theta, bound=False), {n: known[n] for n in by})
+    return motion, _motions(found, motion.time_s)[0]
 
 
 def masses(scene: Scene) -> dict[str, tuple[str, str]]:

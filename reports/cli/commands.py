@@ -100,6 +100,11 @@ Print which length matters most to the motion, and where.
 
 Effect of each length and angle, at a tolerance and at 1 %, on the follower or on any link, slider
 or point, over a turn; exact to first order, from the gradient of the reference."""),
+    "fit": Command("lectures.machine.fit:FitRequest", REFERENCE, """
+Find the lengths of a real mechanism from a log of it.
+
+With one standard deviation of each, from the angles of its driver and of another link, or places.
+Angles alone determine ratios. The exit code is 1 where no lengths explain the log."""),
     "polygon": Command("lectures.drawing.polygon:PolygonRequest", DRAW, """
 Draw the velocity and acceleration polygons of a position.
 Group by group, to scale. Without -o it prints the table of the vectors. With --log the images of

@@ -26,6 +26,7 @@ LINES = {
     "explain CC110": 0,
     "run fourbar-lecture-1 --engine mujoco --turns 1 -o log.parquet": 0,
     "judge fourbar-lecture-1 log.parquet --target 1e-3 -o log.html": 0,
+    "fit fourbar-lecture-1 log.parquet": 0,
     "export fourbar-lecture-1 -o loop.xml": 0,
     "verify --mjcf loop.xml --drive crank.A --speed 10 --turns 0.5 -o model": 0,
     "recipe forces --engine mujoco": 0,
