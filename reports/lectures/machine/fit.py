@@ -208,12 +208,13 @@ def _show(console: Console, found: LengthFit, checks: Sequence[_Check], log: Own
     for check in checks:
         line = f"{check.name}: residuals of {readable(check.rms)} {check.unit} rms"
         if check.explained:
-            say(console, f"{line}, noise as far as the log shows.")
-        else:
-            say(
-                console,
-                f"NOT EXPLAINED  {line}, of which {readable(check.orderly)} {check.unit} follow "
-                f"{scene.driver.joint}: no lengths of this mechanism and assembly give this log; "
-                "try --zeros, a start nearer to it, another branch or mechanism",
-                "bold red",
-            )
+            say(console, f"{line}, explained")
+            continue
+        part = f"of which {readable(check.orderly)} {check.unit} follow {scene.driver.joint}"
+        say(console, f"NOT EXPLAINED  {line}, {part}", "bold red")
+    if not all(check.explained for check in checks):
+        say(
+            console,
+            "No lengths of this mechanism and assembly give this log: try --zeros, a start nearer "
+            "to it, another branch, another mechanism.",
+        )
