@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from analytic.gradients.dimensions import dimensions, with_dimensions
+from analytic.gradients.gradient import gradient_at
 from analytic.gradients.length_fit import LengthFit, LoggedSeries, fit_lengths
 from analytic.kinematics import solve_driven
 from models.array import Array
@@ -39,6 +40,17 @@ def fitted(seed: int) -> LengthFit:
     return fit_lengths(START, drive, [angle("rocker", rocker)])
 
 
+def own_by_theory() -> dict[str, float]:
+    """Deviations of independent noise of one size, of both angles."""
+    names, theta = ["crank", "coupler", "rocker"], np.linspace(0.1, 0.1 + 4.0 * math.pi, 360)
+    _, by = gradient_at(REAL, theta, [*names, "driver.angle"])
+    each = {name: motion.links["rocker"].theta for name, motion in by.items()}
+    noise = NOISE * np.sqrt(1.0 + each.pop("driver.angle") ** 2)
+    columns = np.array(list(each.values())) / noise
+    inverse = np.linalg.inv(columns @ columns.T)
+    return dict(zip(names, np.sqrt(np.diag(inverse)).tolist(), strict=True))
+
+
 @pytest.mark.parametrize("count", [4, slowly(100, reason="the spread of deviations")])
 def test_ratios_are_within_three_of_their_own_deviations_which_are_right(count: int) -> None:
     every = [fitted(seed) for seed in range(count)]
@@ -48,6 +60,7 @@ def test_ratios_are_within_three_of_their_own_deviations_which_are_right(count: 
         off = np.array([one.values[name] - dimensions(REAL)[name].value for one in every])
         own = np.array([one.deviations[name] for one in every])
         within &= np.abs(off) < 3.0 * own
+        assert own == pytest.approx(own_by_theory()[name], rel=0.5)
         if count == 100:
             assert 1 / 1.5 < float(np.sqrt(np.mean(off**2)) / np.median(own)) < 1.5
     assert within.sum() >= 0.95 * count - 1
