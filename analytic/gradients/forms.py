@@ -71,8 +71,8 @@ class Places:
         self, scene: Scene, chunk: Chunk, wanted: Mapping[str, Dimension], order: Sequence[str]
     ) -> None:
         """``order`` are all bodies in solving order."""
-        self.scene, self.chunk, self.wanted = scene, chunk, wanted
-        self.turns = {b: turning(chunk.bodies[b], chunk.theta) for b in (GROUND, *order)}
+        self.scene, self.chunk, self.wanted, self.order = scene, chunk, wanted, (GROUND, *order)
+        self.turns = {b: turning(chunk.bodies[b], chunk.theta) for b in self.order}
         self._firsts = {
             name: next(iter(link.points.values())) for name, link in scene.links.items()
         }
@@ -86,11 +86,10 @@ class Places:
         """Return the derivative of a body's angle by that of one before it, None if there is no
         slider between them."""
         for name, slider in self.scene.sliders.items():
-            kept = self.shifted("direction", name) + self.shifted("lean", name)
             ends = sliding_body(slider), slider.on
             if body in ends and (other := ends[ends[0] == body]) in self._angles:
                 self.tied.add(name)
-                own = self._angles[other]
+                own, kept = self._angles[other], self.lean(slider)
                 return own + kept if body == ends[0] else own - kept
         return None
 
@@ -128,32 +127,24 @@ class Places:
         return self.place(body, local_point(self.scene, body, name), "point", body, name)
 
     def ride(self, slider: Slider) -> DerivativeForm:
-        """Return the derivative of a slider's point along its line, its displacement, and i times
-        that across it, which is 0::
+        """Return the derivative of a slider's displacement w and, times i, of its way across::
 
-            w = exp(-i angle) (tip - through)       dw - i w d(angle) + i w d(angle), w = s
+        w = exp(-i angle) (tip - through)       dw = exp(-i angle) d(tip - through) - i w d(angle)
         """
-        guide, name = slider.on, slider.name
-        line = self.along(slider)
+        guide, name, angle, s = slider.on, slider.name, slider.direction_rad, self.slid(slider)
+        off = rounding_of_angles(angle) + 2 * EPS if angle else 0.0
+        unit = Varying.constant(complex(np.cos(angle), np.sin(angle)), off)
         tip = self.point(sliding_body(slider), slider.point)
         away = tip - self.place(guide, slider.through_m, "through", name)
         turned = self.angle(guide) + self.shifted("direction", name)
-        return away.times(line.conj()) - turned.times(self.displacement(name) * QUARTER)
+        return away.times((self.turns[guide] * unit).conj()) - turned.times(s * QUARTER)
 
-    def along(self, slider: Slider) -> Varying:
-        """Return the unit vector along the line of a slider."""
-        angle = slider.direction_rad
-        off = rounding_of_angles(angle) + 2 * EPS if angle else 0.0
-        unit = Varying.constant(complex(np.cos(angle), np.sin(angle)), off)
-        return self.turns[slider.on] * unit
-
-    def displacement(self, slider: str) -> Varying:
+    def slid(self, slider: Slider) -> Varying:
         """Return the displacement of a slider."""
-        s = self.chunk.sliders[slider]
-        levels, errors = (s.s, s.speed, s.acceleration), s.error or (0.0, 0.0, 0.0)
-        return Varying.of(levels, tuple(errors), self.chunk.theta)
+        s = self.chunk.sliders[slider.name]
+        errors = s.error or (0.0, 0.0, 0.0)
+        return Varying.of((s.s, s.speed, s.acceleration), tuple(errors), self.chunk.theta)
 
     def lean(self, slider: Slider) -> DerivativeForm:
-        """Return the derivative of the angle that a sliding body keeps to its guide: it is 0."""
-        kept = self.shifted("direction", slider.name) + self.shifted("lean", slider.name)
-        return self.angle(sliding_body(slider)) - self.angle(slider.on) - kept
+        """Return the derivative of the angle of a sliding body against its guide."""
+        return self.shifted("direction", slider.name) + self.shifted("lean", slider.name)

@@ -21,11 +21,10 @@ from analytic.gradients.certified import LinearSystem
 from analytic.gradients.dimensions import Dimension
 from analytic.gradients.forms import DerivativeForm, Places, Unknown
 from analytic.gradients.varying import Varying
-from analytic.structure.groups import Bridge
 from analytic.structure.mobility import analyse
 from models.errors import StructureError
 from models.scene import Scene
-from models.scene.joints import joined_at
+from models.scene.joints import joined_at, sliding_body
 
 FITS = 1e-6
 """Largest misfit of a redundant link after a change of a dimension by 1 m or rad, over lengths."""
@@ -65,16 +64,12 @@ def linearised(scene: Scene, chunk: Chunk, wanted: Mapping[str, Dimension]) -> L
 
 def _stages(scene: Scene) -> list[tuple[str, ...]]:
     """Return the bodies of the driver, and of each group, in solving order."""
-    structure, driver = analyse(scene), scene.driver
-    compound = structure.compound
-    stages: list[tuple[str, ...]] = [] if compound is not None else [(driver.link,)]
-    for part in structure.order:
-        bodies = part.bodies
-        if compound is not None and compound.name in bodies:
-            others = (body for body in bodies if body != compound.name)
-            bodies = (compound.base, compound.link, *others)
-        stages.append(bodies)
-    return stages
+    structure = analyse(scene)
+    groups = [part.bodies for part in structure.order]
+    if (two := structure.compound) is None:
+        return [(scene.driver.link,), *groups]
+    each = {two.name: (two.base, two.link)}
+    return [tuple(b for body in own for b in each.get(body, (body,))) for own in groups]
 
 
 def _solved(found: Linearised, stage: tuple[str, ...], rows: list[Row]) -> dict[Unknown, Varying]:
@@ -138,21 +133,21 @@ class _Joints:
 
     def __init__(self, places: Places) -> None:
         self.places, self.scene = places, places.scene
-        order = analyse(self.scene).redundant
-        self.bridges: Mapping[str, Bridge] = {one.link: one for one in order}
+        self.bridges = {one.link: one for one in analyse(self.scene).redundant}
         self.kept: list[Row] = []
 
     def rows(self) -> Iterator[Row]:
         scene, places = self.scene, self.places
         for point, held in joined_at(scene).items():
-            first, *others = sorted(held, key=lambda body: body in self.bridges)
+            first, *others = sorted(held, key=places.order.index)
             for body in others:
                 gap = places.point(body, point) - places.point(first, point)
                 yield from self._pin(body, point, gap)
         for slider in scene.sliders.values():
             yield places.ride(slider), True
             if slider.name not in places.tied:
-                yield places.lean(slider), False
+                ends = places.angle(sliding_body(slider)), places.angle(slider.on)
+                yield ends[0] - ends[1] - places.lean(slider), False
         for gear in scene.gears.values():
             form = DerivativeForm()
             for body, factor in gear.relation.items():
@@ -161,15 +156,11 @@ class _Joints:
             yield form, False
         for pair in scene.cams.values():
             yield follower_form(places, pair), False
-        yield self._driven(), False
-
-    def _driven(self) -> DerivativeForm:
-        driver, places = self.scene.driver, self.places
+        driver = scene.driver
+        moved = places.angle(driver.link) - places.angle(driver.base)
         if driver.slider is not None:
-            moved = places.ride(self.scene.sliders[driver.slider])
-        else:
-            moved = places.angle(driver.link) - places.angle(driver.base)
-        return moved - places.shifted("driver")
+            moved = places.ride(scene.sliders[driver.slider])
+        yield moved - places.shifted("driver"), False
 
     def _pin(self, body: str, point: str, gap: DerivativeForm) -> Iterator[Row]:
         """Yield the equations of a pin; of a redundant link both only at the first of the two pins

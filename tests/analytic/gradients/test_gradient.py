@@ -190,3 +190,23 @@ def test_faulty_requests_are_refused() -> None:
     far = with_dimensions(scene, {"coupler": 2.0})
     with pytest.raises(ReachError):
         gradient(far, np.zeros(1))
+
+
+TRIPLE = """
+name = "triple"
+source = "test"
+ground.points = { A = [0.0, 0.0], D = [0.3, 0.0] }
+links.crank.points = { A = [0.0, 0.0], B = [0.1, 0.0] }
+links.rod.points = { C = [0.0, 0.0], E = [0.15, 0.0] }
+links.coupler.points = { B = [0.0, 0.0], C = [0.25, 0.0] }
+links.rocker.points = { C = [0.0, 0.0], D = [0.2, 0.0] }
+driver = { link = "crank", speed_rad_s = 3.0, start_deg = 60.0 }
+sliders.E = { on = "ground", through_m = [0.4, 0.3], direction_deg = 80.0 }
+"""
+
+
+def test_several_groups_hang_on_one_pin() -> None:
+    """The rod stands first in the file, and is placed last."""
+    found = gradient(parse_scene(TRIPLE, "test"), np.array([0.05]))
+    for name in ("coupler", "rod"):
+        assert shares(found, name).max() <= 1.0
