@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
@@ -32,7 +32,6 @@ from reports.requests.shown import Shown
 if TYPE_CHECKING:
     import pandas as pd
 
-DOCUMENT = ".json"
 PICTURES = tuple(f".{kind}" for kind in DOTS_PER_IN)
 
 
@@ -118,7 +117,7 @@ class SensitivityRequest:
     json: Annotated[bool, "As JSON, not as a table."] = False
     output: Annotated[
         Path | None,
-        output_option("Draw the curves (.svg, .pdf, .png), or write .csv, .parquet, .xlsx, .json."),
+        output_option("Draw the curves (.svg, .pdf, .png), or write .csv, .parquet or .xlsx."),
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
@@ -127,35 +126,25 @@ class SensitivityRequest:
             if not 0.0 < value < math.inf:
                 raise CrankcheckError(f"--tolerance-{name}: found {value:g}; give one above 0")
         if self.output is not None:
-            endings = (*PICTURES, *ENDINGS, DOCUMENT)
-            check_file(self.output, "-o", endings, inputs=[find_scene(self.scene)])
+            check_file(self.output, "-o", (*PICTURES, *ENDINGS), inputs=[find_scene(self.scene)])
         tolerances = 1e-3 * self.tolerance_mm, math.radians(self.tolerance_deg)
         found = effects(load_scene(self.scene), self.of, self.by, *tolerances)
         if self.output is not None:
             _write(found, self.output)
-            say(console, f"{self.output}: effects on {found.of} of {found.gradient.scene.name}")
+        told = f"{self.output}: effects on {found.of} of {found.gradient.scene.name}"
         if self.json:
-            console.file.write(json_text(_document(found)))
-        elif self.output is None:
+            facts = {"scene": found.gradient.scene.name, "of": found.of, "unit": found.unit}
+            rows = {"dimensions": found.rows(), "locked": list(found.gradient.locked)}
+            console.file.write(json_text({**facts, **rows}))
+        elif self.output is not None:
+            say(console, told)
+        else:
             show_effects(console, found)
         return 0
 
 
-def _document(found: Effects) -> Mapping[str, object]:
-    return {
-        "scene": found.gradient.scene.name,
-        "of": found.of,
-        "unit": found.unit,
-        "dimensions": found.rows(),
-        "locked": list(found.gradient.locked),
-    }
-
-
 def _write(found: Effects, path: Path) -> None:
-    ending = path.suffix.lower()
-    if ending == DOCUMENT:
-        write(path, json_text(_document(found)))
-    elif ending in PICTURES:
+    if (ending := path.suffix.lower()) in PICTURES:
         from reports.lectures.machine.sensitivity_figure import effects_picture
 
         write(path, effects_picture(found, ending[1:]))
@@ -203,6 +192,8 @@ def show_effects(console: Console, found: Effects) -> None:
         f"All but the driver at once: {readable(worst)} {found.unit} at worst, "
         f"{readable(usual)} {found.unit} as the root of the sum of squares.",
     )
+    if scene.elastic:
+        say(console, "Elastic links are taken as rigid.")
     if lost := int(np.isnan(found.slopes).any(axis=0).sum()):
         say(console, f"{lost} of {SAMPLES} samples stand where nothing is certain: left out.")
     if locked := found.gradient.locked:

@@ -48,7 +48,7 @@ def test_it_is_written_as_curves_table_and_document(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     line = ("sensitivity", "slider-crank-offset", "--by", "rod", "--by", "driver.angle")
-    for file in ("curves.csv", "curves.svg", "effects.json"):
+    for file in ("curves.csv", "curves.svg"):
         assert crank_alone(*line, "-o", file).exit_code == 0
     head, first, *_ = (tmp_path / "curves.csv").read_text().splitlines()
     assert head == "time_s,driver_deg,C_by_rod_m_per_m,C_by_driver.angle_m_per_rad"
@@ -56,8 +56,7 @@ def test_it_is_written_as_curves_table_and_document(
     svg = (tmp_path / "curves.svg").read_text()
     assert "Effect of dimensions on C" in svg
     assert all(name in svg for name in ("rod", "driver.angle", "angle of crank [deg]"))
-    document = json.loads((tmp_path / "effects.json").read_text())
-    assert json.loads(crank_alone(*line, "--json").stdout) == document
+    document = json.loads(crank_alone(*line, "--json").stdout)
     assert [row["dimension"] for row in document["dimensions"]] == ["driver.angle", "rod"]
 
 
