@@ -61,7 +61,10 @@ DOCUMENTS = (
     *(b"PK", b"PAR1", b"%PDF", b"\x89PNG", b"GIF8"),
 )
 MARKS = (b"crankcheck", b"<!-- Planar: in the x-y plane")
-TABLES = (b"scene,", b"fault,", b"turned_rad,", b"# Known failures", b'"""Reactions ')
+TABLES = (
+    *(b"driver_deg,time_s,", b"driver_m,time_s,"),
+    *(b"scene,", b"fault,", b"turned_rad,", b"# Known failures", b'"""Reactions '),
+)
 """First bytes of what commands write: of files with a mark, of which a model has the second; and of
 CSV, known failures and recipes, which have none."""
 LOG = re.compile(rb"time_s,(?:velocity_time_s,)?([^,]+)_theta_rad,\1_omega_rad_s\b")

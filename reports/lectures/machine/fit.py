@@ -24,7 +24,7 @@ from reports.logs.channel import Channel, OwnLog, Reading
 from reports.output.console import grid, say
 from reports.output.formats import json_text
 from reports.output.numbers import readable
-from reports.output.write import Outputs, write
+from reports.output.write import check_file, write
 from reports.requests.any_log import log_of
 from reports.requests.options import SceneName, argument, option
 
@@ -60,8 +60,8 @@ class FitRequest:
         a log that can not be read, and for a faulty request."""
         if self.noise_deg is not None and not 0.0 < self.noise_deg < math.inf:
             raise CrankcheckError(f"--noise-deg: found {self.noise_deg:g}; give one above 0")
-        files = {"--write": self.written}
-        Outputs(files).check([find_scene(self.scene), self.log, self.map])
+        inputs = [find_scene(self.scene), self.log, self.map]
+        check_file(self.written, "--write", (".toml",), inputs=inputs)
         scene = load_scene(self.scene)
         given = dict(_given(scene, text) for text in self.given)
         log = log_of(scene, self.log, self.map)

@@ -125,8 +125,7 @@ class SensitivityRequest:
         for name, value in (("mm", self.tolerance_mm), ("deg", self.tolerance_deg)):
             if not 0.0 < value < math.inf:
                 raise CrankcheckError(f"--tolerance-{name}: found {value:g}; give one above 0")
-        if self.output is not None:
-            check_file(self.output, "-o", (*PICTURES, *ENDINGS), inputs=[find_scene(self.scene)])
+        check_file(self.output, "-o", (*PICTURES, *ENDINGS), inputs=[find_scene(self.scene)])
         tolerances = 1e-3 * self.tolerance_mm, math.radians(self.tolerance_deg)
         found = effects(load_scene(self.scene), self.of, self.by, *tolerances)
         if self.output is not None:
@@ -153,7 +152,7 @@ def _write(found: Effects, path: Path) -> None:
 
         scene, motion = found.gradient.scene, found.gradient.motion
         driven = driver_axis(scene).rpartition(" [")[2][:-1]
-        columns = {"time_s": motion.time_s, f"driver_{driven}": driver_shown(scene, motion)}
+        columns = {f"driver_{driven}": driver_shown(scene, motion), "time_s": motion.time_s}
         for one, series in zip(found.dimensions, found.slopes, strict=True):
             units = f"{'rad' if found.turns else 'm'}_per_{one.unit}"
             columns[f"{found.of}_by_{one.name}_{units}"] = series

@@ -48,11 +48,11 @@ def test_it_is_written_as_curves_table_and_document(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     line = ("sensitivity", "slider-crank-offset", "--by", "rod", "--by", "driver.angle")
-    for file in ("curves.csv", "curves.svg"):
+    for file in ("curves.csv", "curves.svg", "curves.csv"):
         assert crank_alone(*line, "-o", file).exit_code == 0
     head, first, *_ = (tmp_path / "curves.csv").read_text().splitlines()
-    assert head == "time_s,driver_deg,C_by_rod_m_per_m,C_by_driver.angle_m_per_rad"
-    assert float(first.split(",")[1]) == pytest.approx(30.0)
+    assert head == "driver_deg,time_s,C_by_rod_m_per_m,C_by_driver.angle_m_per_rad"
+    assert float(first.split(",")[0]) == pytest.approx(30.0)
     svg = (tmp_path / "curves.svg").read_text()
     assert "Effect of dimensions on C" in svg
     assert all(name in svg for name in ("rod", "driver.angle", "angle of crank [deg]"))
