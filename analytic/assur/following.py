@@ -143,6 +143,8 @@ def end_beside(poses: list[CentralPose], way: float) -> TrackEnd:
     """Return the end where the determinant goes to zero, and its kind: like the root of the
     remaining way, or like the way itself."""
     last = poses[-1]
+    if len(poses) < 2:  # a start in the end itself
+        return TrackEnd(last.theta, "doubtful position")
     theta = np.array([pose.theta for pose in poses[:-1]])
     det = np.abs([pose.det for pose in poses[:-1]])
     away = np.abs(theta - last.theta)

@@ -22,8 +22,9 @@ from models.scene.laws import ConstantSpeed
 from models.scene.moved import moved
 from tests.analytic.assur.triad_scenes import KINDS, on_branch, triad
 from tests.analytic.four_bars import fourbar
+from tests.analytic.gradients.drawn import TRIAD, drawn
 from tests.analytic.test_bounds import shares
-from tests.worlds.tiers import few, slowly
+from tests.worlds.tiers import few, slow, slowly
 
 FEW_KINDS = [("RR", "RR", "RR"), ("RR", "PR", "RP"), ("PR", "RP", "PP")]
 few_kinds = pytest.mark.parametrize(
@@ -206,3 +207,10 @@ def test_a_piston_stands_between_its_dead_points_alone() -> None:
     assert ahead == pytest.approx((0.2, 0.4), abs=1e-12)
     with pytest.raises(ReachError, match=r"slider C at 0\.41 m: the loop cannot close at B"):
         solve_driven(scene, np.array([0.41]), np.ones(1), np.zeros(1))
+
+
+@slow("seconds of following to draw one so near")
+def test_a_start_next_to_its_end_is_followed_from_there() -> None:
+    scene = drawn(TRIAD, np.random.default_rng(5), near=True)
+    sine = solve(scene, np.zeros(1)).conditioning["platform"]
+    assert 0.0 < float(sine[0]) < 1e-6
