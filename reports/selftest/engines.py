@@ -124,7 +124,7 @@ FAULTS = (
     _fault("solver-stops-early", "one iteration of an iterative solver", "CC105",
            fault.in_settings("few-iterations"), 1.0,
            shown=lambda size: f"{round(1.0 / size)} iter.", needs=fault.can_set("few-iterations")),
-    _fault("first-order", "errors of places corrected late: first order", "CC103",
+    _fault("first-order", "places corrected late: first order", "CC103",
            fault.in_settings("first-order"), needs=fault.can_set("first-order")),
     _fault("float32-arithmetic", "the state is kept in float32", "CC102",
            done_to(lambda tools: tools.round_state, lambda n: range(1, n)), 2.0**-24, "of it",

@@ -42,7 +42,7 @@ GROUPS = {
     "misplaced": "numbers of the log in a wrong place",
     "missing": "something missing from the log",
 }
-CONTACT = {"contact": f"another cam by contact, {FINER * STEPS} steps a turn"}
+CONTACT = {"contact": f"another cam by contact, {FINER * STEPS} steps"}
 FAULTS = FaultSet(
     (
         *requests.RUN_FAULTS,
