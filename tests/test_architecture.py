@@ -26,6 +26,9 @@ ARROWS: Mapping[str, set[str]] = {
     "reports": {"models", "analytic", "sim"},
     "crankcheck": {"models", "analytic", "sim", "reports"},
 }
+ROOMS = {name: room.removeprefix("..") for name, room in ENGINES.items()}
+BUILT_ON = ("mjx", "mujoco_warp")
+"""Rooms of engines that step the models of another's compiler."""
 FLOORS: Mapping[str, str] = {
     "reports": """
         cli lectures ways
@@ -59,7 +62,8 @@ FLOORS: Mapping[str, str] = {
         structure
     """,
     "sim": f"""
-        {" ".join(ENGINES)}
+        {" ".join(BUILT_ON)}
+        {" ".join(room for room in ROOMS.values() if room not in BUILT_ON)}
         run
         registry
         own_engine
@@ -70,9 +74,9 @@ FLOORS: Mapping[str, str] = {
 LOOSE = {"analytic"}
 LECTURES = "lectures"
 """The room of each package on top of all others: no other room imports it, a table names it."""
-HOMES = {declaration(name).package: f"sim.{name}" for name in ENGINES}
+HOMES = {declaration(name).package: f"sim.{room}" for name, room in ROOMS.items()}
 """Each engine's package, and the one room that imports it."""
-NAMING = ("sim/registry/__init__.py", "models/mjcf/", *(f"sim/{name}/" for name in ENGINES))
+NAMING = ("sim/registry/__init__.py", "models/mjcf/", *(f"sim/{room}/" for room in ROOMS.values()))
 """Where engines are named: the line of each, MuJoCo's own format, which others read too, and each
 engine's folder."""
 MENTIONING: Mapping[str, str] = {

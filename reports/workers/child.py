@@ -16,14 +16,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
+from sim.engine.compiling import listen
 from sim.own_engine.known import told
 
 Ending = tuple[str, object, bytes]
 """Ending of a job (``done``, ``crashed``), its result or reason, and its exception, pickled: a
-reader of the ending need not know it."""
+reader of the ending need not know it. An engine that compiles is no ending (``compiling``), with
+True at its begin and False at its end."""
 Answer = tuple[*Ending, bool]
 """An ending, and whether another child should do the next job, as this one has much memory that it
 did not give back."""
+COMPILING = "compiling"
 WORN = 0.5
 """Share of its memory that a child may have kept from job to job."""
 
@@ -39,6 +42,7 @@ def main(memory_bytes: int) -> None:
     # Imports of the first function are no part of any cell's time or memory.
     _, own_engines = pickle.loads(jobs.get())
     told(own_engines)
+    listen(lambda begins: send(answers, (COMPILING, begins, b"", False)))
     at_first = _taken()
     _limit(at_first + memory_bytes)
     send(answers, ("ready", None, b"", False))

@@ -23,6 +23,8 @@ ENGINES: Mapping[str, str] = {
     "drake": "..drake",
     "dart": "..dart",
     "simbody": "..simbody",
+    "mjx": "..mjx",
+    "mujoco-warp": "..mujoco_warp",
 }
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
@@ -39,6 +41,16 @@ class BrokenEngineError(EngineError):
 
 
 @dataclass(frozen=True)
+class Fewer:
+    """Length of a verification, and its scenes where none is named, of an engine whose steps take
+    long."""
+
+    steps_per_turn: float = 180.0
+    turns: float = 1.0
+    scenes: tuple[str, ...] = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever")
+
+
+@dataclass(frozen=True)
 class Declaration:
     """Content of an engine's folder; its ``__init__`` has it as ``DECLARATION``.
 
@@ -48,7 +60,8 @@ class Declaration:
     too, with a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`,
     `Spoiler`, `Viewer`, `Reader` or `ForceRecipe`. An engine that runs ``apart`` may end its
     process: it gets one of its own. ``tried`` starts every version that was compared with the
-    reference, ``wheels`` says for which systems there are any, where not for all.
+    reference, ``wheels`` says for which systems there are any, where not for all. ``fewer`` is the
+    default verification of an engine whose steps take long.
     """
 
     package: str
@@ -60,6 +73,7 @@ class Declaration:
     tried: str = ""
     wheels: str = ""
     pip_name: str = ""
+    fewer: Fewer | None = None
 
     @property
     def distribution(self) -> str:
