@@ -25,15 +25,19 @@ ENGINES: Mapping[str, str] = {
     "simbody": "..simbody",
     "mjx": "..mjx",
     "mujoco-warp": "..mujoco_warp",
+    "newton": "..newton",
 }
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
 """Default engine where one is enough."""
 Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"]
 """Optional parts of an engine."""
-Formulation = Literal["soft constraints", "constraint impulses", "constraint equations", "own"]
+Formulation = Literal[
+    "soft constraints", "constraint impulses", "constraint equations", "by solver", "own"
+]
 """Ways of holding a loop: by forces that give way; by impulses that correct velocities, once or in
-sweeps; by the equations of the joints, solved in each step; one that is not known here."""
+sweeps; by the equations of the joints, solved in each step; another with each of its solvers; one
+that is not known here."""
 
 
 class BrokenEngineError(EngineError):

@@ -1,0 +1,42 @@
+"""CC135: what closes the loops holds."""
+
+from models.errors import few
+from reports.compare.branch import CLOSED
+from reports.judge.rules.rule import Evidence, Finding
+from reports.output.numbers import count
+
+FREEDOMS = {"pin": 2}
+"""Freedoms that a joint takes from two bodies, by kind; a slider takes one, beside that of turning,
+which its block may have."""
+
+
+class LoopsHold:
+    id = "CC135"
+    title = "loops"
+    explanation = (
+        "A joint that is open by a twentieth of the longest link holds nothing any more: what is "
+        "left of the joints gives the mechanism more freedoms than it has. Solvers of joint "
+        "coordinates may leave out the joints that close loops, without a word."
+    )
+    cure = (
+        "Look at whether the solver enforces joints that close loops, and how stiff they are: a "
+        "shorter step does not help where it leaves them out."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        """Name the open joints, and the freedoms that they add."""
+        rows = evidence.errors.rows if evidence.errors else ()
+        held = [row for row in rows if row.quantity == "gap" and row.kind == "total"]
+        if not held:
+            return None
+        worst = max(row.pure for row in held)
+        open_ = [row for row in held if not row.pure < CLOSED]
+        if not open_:
+            return Finding(self.id, "pass", "every joint holds", worst, CLOSED)
+        more = sum(FREEDOMS.get(row.body_kind, 1) for row in open_)
+        names = few((f"{row.body_kind} {row.body}" for row in open_), 4)
+        text = (
+            f"loop not enforced: {names} open by up to {worst:.2g} of the longest link, which "
+            f"leaves {count(more, 'freedom')} more than the mechanism has"
+        )
+        return Finding(self.id, "advice", text, worst, CLOSED)
