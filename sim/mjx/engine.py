@@ -21,9 +21,9 @@ from sim.mujoco.ported import PortedSession, version_of
 os.environ.setdefault(
     "XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 )
+mjx = imported("mujoco.mjx")  # it imports Warp, where that is installed
 jax: Any = import_module("jax")  # so that types do not depend on what is installed
 jnp: Any = import_module("jax.numpy")
-mjx = imported("mujoco.mjx")  # it imports Warp, where that is installed
 VERSION = version_of(version("mujoco-mjx"))
 MOST = 4000
 """Steps of a compiled loop at most: its arrays have one size, so that it is compiled once."""

@@ -1,21 +1,20 @@
 """MuJoCo Warp: MuJoCo's models stepped by kernels of Warp, in single precision."""
 
-from importlib import import_module
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 
 from models.array import Array
-from sim.engine.imported import imported_warp
+from sim.engine.imported import imported, imported_warp
 from sim.engine.settings import shipped_engine
 from sim.mujoco import settings as mujoco
 from sim.mujoco.ported import PortedSession, version_of
 from sim.mujoco_warp import DECLARATION
 from sim.mujoco_warp import settings as own
 
+mjw = imported("mujoco_warp")
 wp = imported_warp()
-mjw: Any = import_module("mujoco_warp")  # so that types do not depend on what is installed
 VERSION = version_of(version("mujoco-warp"))
 STEPPERS = (mjw.euler, mjw.rungekutta4, mjw.implicit, mjw.implicit, mjw.discrete)
 """What follows an evaluation of the forces, by MuJoCo's number of the integrator."""

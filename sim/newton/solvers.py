@@ -8,8 +8,8 @@ from models.errors import EngineError
 from sim.engine import Settings
 from sim.engine.imported import imported, imported_warp
 
-wp = imported_warp()
 newton = imported("newton")
+wp = imported_warp()
 solvers = imported("newton.solvers")
 MAXIMAL = frozenset({"XPBD", "Kamino"})
 """Solvers of bodies by their places, which take a led body as it is put. In the others, of joint

@@ -169,7 +169,7 @@ def _loaded(name: str, part: str) -> object:
             raise
         # A half-removed package leaves of an engine a module that lacks attributes.
         lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
-        if (lacking or package).split(".")[0] != package:
+        if (lacking or package).split(".")[0] != package.split(".")[0]:
             raise
         raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
     return getattr(module, part.upper())
