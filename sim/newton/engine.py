@@ -156,7 +156,7 @@ class NewtonSession(HeavyDriverSession):
     def _start(self, solver: Any) -> None:
         """Put the state of the start into the model, for a solver that has not stepped."""
         self.solver, self.control = solver, self.model.control()
-        self.now, self.next = self.model.state(), self.model.state()
+        self.now, self.next, self.between = (self.model.state() for _ in range(3))
         rates = [freedom.rate for limb in self.tree.limbs for freedom in limb.freedoms]
         self.now.joint_qd.numpy()[: len(rates)] = rates
         for name in self.names:
@@ -206,10 +206,20 @@ class NewtonSession(HeavyDriverSession):
 
     def look(self) -> Array:
         rows = [self.index[name] for name in self.names]
+        there = self.now if self.maximal else self._at_rates()
         q = self.now.body_q.numpy()[rows].astype(np.float64)
-        rate = self.now.body_qd.numpy()[rows].astype(np.float64)
+        rate = there.body_qd.numpy()[rows].astype(np.float64)
         theta = 2.0 * np.arctan2(q[:, 5], q[:, 6])
         return np.column_stack([q[:, :2], theta, rate[:, :2], rate[:, 5]])
+
+    def _at_rates(self) -> Any:
+        """Return the bodies at the instant of the joint rates."""
+        now, there = self.now, self.between
+        tree = slice(sum(len(limb.freedoms) for limb in self.tree.limbs))  # loops come after it
+        there.joint_q.assign(now.joint_q)
+        there.joint_q.numpy()[tree] += self.shift * self.dt * now.joint_qd.numpy()[tree]
+        newton.eval_fk(self.model, there.joint_q, now.joint_qd, there)
+        return there
 
     def facts(self) -> Facts:
         mass, inertia = self.model.body_mass.numpy(), self.model.body_inertia.numpy()

@@ -5,9 +5,9 @@ from reports.compare.branch import CLOSED
 from reports.judge.rules.rule import Evidence, Finding
 from reports.output.numbers import count
 
-FREEDOMS = {"pin": 2}
-"""Freedoms that a joint takes from two bodies, by kind; a slider takes one, beside that of turning,
-which its block may have."""
+FREEDOMS = {"point": ("pin", 2)}
+"""Name of a joint by the kind of its gap, and the freedoms that it takes from two bodies; of others
+one is sure."""
 
 
 class LoopsHold:
@@ -27,12 +27,13 @@ class LoopsHold:
         """Name the open joints, if any, and the freedoms that they add."""
         rows = evidence.errors.rows if evidence.errors else ()
         gaps = [row for row in rows if row.quantity == "gap" and row.kind == "total"]
-        open_ = [row for row in gaps if not row.pure < CLOSED]
+        open_ = [row for row in gaps if row.finite and row.pure >= CLOSED]
         if not open_:
             return None
         worst = max(row.pure for row in open_)
-        more = sum(FREEDOMS.get(row.body_kind, 1) for row in open_)
-        names = few((f"{row.body_kind} {row.body}" for row in open_), 4)
+        kinds = [FREEDOMS.get(row.body_kind, (row.body_kind, 1)) for row in open_]
+        more = sum(taken for _, taken in kinds)
+        names = few((f"{k} {row.body}" for (k, _), row in zip(kinds, open_, strict=True)), 4)
         text = (
             f"loop not enforced: {names} open by up to {worst:.2g} of the longest link, which "
             f"leaves {count(more, 'freedom')} more than the mechanism has"
