@@ -26,6 +26,9 @@ ARROWS: Mapping[str, set[str]] = {
     "reports": {"models", "analytic", "sim"},
     "crankcheck": {"models", "analytic", "sim", "reports"},
 }
+ROOMS = {name: room.removeprefix("..") for name, room in ENGINES.items()}
+BUILT_ON = ("mjx", "mujoco_warp")
+"""Rooms of engines that step the models of another's compiler."""
 FLOORS: Mapping[str, str] = {
     "reports": """
         cli lectures ways
@@ -59,7 +62,8 @@ FLOORS: Mapping[str, str] = {
         structure
     """,
     "sim": f"""
-        {" ".join(ENGINES)}
+        {" ".join(BUILT_ON)}
+        {" ".join(room for room in ROOMS.values() if room not in BUILT_ON)}
         run
         registry
         own_engine
@@ -70,11 +74,13 @@ FLOORS: Mapping[str, str] = {
 LOOSE = {"analytic"}
 LECTURES = "lectures"
 """The room of each package on top of all others: no other room imports it, a table names it."""
-HOMES = {declaration(name).package: f"sim.{name}" for name in ENGINES}
+HOMES = {declaration(name).package: f"sim.{room}" for name, room in ROOMS.items()}
 """Each engine's package, and the one room that imports it."""
-NAMING = ("sim/registry/__init__.py", "models/mjcf/", *(f"sim/{name}/" for name in ENGINES))
+NAMING = ("sim/registry/__init__.py", "models/mjcf/", *(f"sim/{room}/" for room in ROOMS.values()))
 """Where engines are named: the line of each, MuJoCo's own format, which others read too, and each
 engine's folder."""
+NAMED = {name for name in ENGINES if name != "newton"}
+"""Engines whose name says nothing else: Newton has a method, laws and a unit."""
 MENTIONING: Mapping[str, str] = {
     "reports/cli/commands.py": "whose viewer `view` opens",
     "reports/requests/options.py": "whose files --mjcf takes",
@@ -231,10 +237,10 @@ def namings(root: Path = ROOT) -> list[str]:
     for path in sorted(path for package in ARROWS for path in (root / package).rglob("*.py")):
         file = path.relative_to(root).as_posix()
         text = path.read_text(encoding="utf-8").lower()
-        if file.startswith(NAMING) or not any(name in text for name in ENGINES):
+        if file.startswith(NAMING) or not any(name in text for name in NAMED):
             continue
         for line, word in words(path):
-            if any(name in word.lower() for name in ENGINES):
+            if any(name in word.lower() for name in NAMED):
                 allowed = {each for each in MENTIONING if file.startswith(each) and " " in word}
                 used |= allowed
                 faults += [] if allowed else [f"{file}:{line} names an engine: {word[:60]!r}"]

@@ -24,9 +24,9 @@ from reports.judge.tolerance import check_names
 from reports.output.console import tell
 from reports.output.numbers import listed
 from reports.plan.steps import FREE_STEP_S, STEPS_PER_TURN, counted_free, positive
-from reports.protocol.length import LEAST_STEPS, SEGMENTS, GivenAs, Springs
+from reports.protocol.length import LEAST_STEPS, SEGMENTS, GivenAs, Length, Springs
 from reports.protocol.way import StudyLinks, way_of
-from sim.registry import available, engine, other_version, usual
+from sim.registry import available, declaration, engine, other_version, usual
 
 if TYPE_CHECKING:
     from reports.compare.elastic_truth import ElasticTruth
@@ -122,9 +122,9 @@ def chosen_engines(names: str | Sequence[str], *, notes: bool = True) -> list[st
 
 
 def chosen_profiles(names: str | Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:
-    """Return profiles with whether they are gated: named ones are; by default `tuned` alone is.
-    Raises CrankcheckError for a profile that one of the engines lacks; the message names near
-    ones."""
+    """Return profiles with whether they are gated: named ones are; by default `tuned` alone is, of
+    all that the engines have. Raises CrankcheckError for a profile that one of the engines lacks;
+    the message names near ones."""
     names = names_in(names, "profiles")
     for name in names:
         for each in engines:
@@ -137,7 +137,21 @@ def chosen_profiles(names: str | Sequence[str], engines: Iterable[str]) -> list[
                 )
     if names:
         return [(name, True) for name in dict.fromkeys(names)]
-    return [(PROFILES[0], True), (PROFILES[1], False)]
+    every = dict.fromkeys(
+        [*PROFILES, *(name for each in engines for name in engine(each).profiles)]
+    )
+    return [(name, name == PROFILES[0]) for name in every]
+
+
+def usual_length(name: str, scene: Scene, asked: Length, *, named: bool) -> Length | None:
+    """Return the length of a run in an engine, that of slow engines where none is ``asked``; None
+    for a scene that a slow engine leaves out where no scene is ``named``."""
+    fewer = declaration(name).fewer
+    if fewer is None or (named and (scene.is_free or asked != Length())):
+        return asked
+    if not named and scene.name not in fewer.scenes:
+        return None
+    return asked if asked != Length() else Length(None, fewer.steps_per_turn, fewer.turns)
 
 
 FREE = "free"

@@ -120,15 +120,27 @@ def plan(request: VerifyOptions) -> list[Cell]:
     engines = requirements.chosen_engines(request.engines)
     profiles = requirements.chosen_profiles(request.profiles, engines)
     given = requirements.given_of(scenes, request.segments, request.springs)
-    length = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
-    laid = [(each, *laid_out(each, length, given, with_forces=request.forces)) for each in scenes]
+    asked = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
+    lengths = {
+        (name, scene.name): requirements.usual_length(
+            name, scene, asked, named=bool(request.scenes)
+        )
+        for name in engines
+        for scene in scenes
+    }
+    laid = {
+        (scene.name, length): laid_out(scene, length, given, with_forces=request.forces)
+        for scene in scenes
+        for length in {lengths[name, scene.name]: None for name in engines}
+        if length
+    }
     return [
         Cell(
             scene=scene,
             engine=name,
             profile=profile,
-            dt_s=dt_s,
-            steps=count,
+            dt_s=laid[scene.name, length][0],
+            steps=laid[scene.name, length][1],
             gated=gated,
             drive=driven_by(scene, cast(Drive, request.drive)),
             tolerance=limits,
@@ -137,9 +149,10 @@ def plan(request: VerifyOptions) -> list[Cell]:
             segments=given.segments,
             springs=given.springs,
         )
-        for scene, dt_s, count in laid
+        for scene in scenes
         for profile, gated in profiles
         for name in engines
+        if (length := lengths[name, scene.name]) and profile in engine(name).profiles
     ]
 
 

@@ -26,6 +26,7 @@ from reports.output.numbers import count, readable
 from reports.output.palette import engine_styles
 from reports.protocol.way import WAYS
 from reports.quantities import QUANTITIES, named
+from sim.registry import declaration
 
 Texts = Callable[[Checked], Sequence[str]]
 Styles = Mapping[str, str]
@@ -156,7 +157,7 @@ def _words_of_rules(shares: Iterable[str]) -> str:
     return f"error / limit: {'; '.join(told)}" if told else ""
 
 
-UNITS, LINK_UNITS, OF_FORCES, MORE_UNITS, MORE_STEPS, NOTES, STEPS = range(7)
+UNITS, LINK_UNITS, OF_FORCES, MORE_UNITS, MORE_STEPS, NOTES, STEPS, SLOW = range(8)
 """Places of parts: units and steps of cells, with those of free motion between."""
 OF_FORCES_WORDS = (
     "Forces against kinetostatics at their own instants; F largest reaction, M largest torque over "
@@ -166,7 +167,7 @@ OF_FORCES_WORDS = (
 
 def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     """Return units, steps and versions."""
-    of_all: list[Part] = [(OF_FORCES, _of_forces), (NOTES, _notes)]
+    of_all: list[Part] = [(OF_FORCES, _of_forces), (NOTES, _notes), (SLOW, _slow)]
     own = {part: [*checked] for part in of_all}
     for one in checked:
         for part in cast(Sequence[Part], one.cell.way.part("footer")):
@@ -190,6 +191,18 @@ def _notes(checked: Sequence[Checked]) -> list[str]:
             words = "".join(letter for letter in note if not letter.isdigit())
             notes.setdefault((one.cell.scene.name, words), f"{one.cell.scene.name}: {note}.")
     return list(notes.values())
+
+
+def _slow(checked: Sequence[Checked]) -> list[str]:
+    """Return the defaults of engines whose steps take long, each once."""
+    names = dict.fromkeys(one.cell.engine for one in checked)
+    found = {name: declaration(name).fewer for name in names}
+    return [
+        f"{name}: slow on a processor; by default {fewer.steps_per_turn:g} steps a turn, "
+        f"{fewer.turns:g} turn, and {count(len(fewer.scenes), 'scene')} where none is named."
+        for name, fewer in found.items()
+        if fewer
+    ]
 
 
 def span(values: Sequence[float]) -> str:

@@ -18,10 +18,12 @@ from typing import IO
 
 Ending = tuple[str, object, bytes]
 """Ending of a job (``done``, ``crashed``), its result or reason, and its exception, pickled: a
-reader of the ending need not know it."""
+reader of the ending need not know it. An engine that compiles is no ending (``compiling``), with
+True at its begin and False at its end."""
 Answer = tuple[*Ending, bool]
 """An ending, and whether another child should do the next job, as this one has much memory that it
 did not give back."""
+COMPILING = "compiling"
 WORN = 0.5
 """Share of its memory that a child may have kept from job to job."""
 
@@ -40,6 +42,10 @@ def main(memory_bytes: int) -> None:
         from sim.own_engine.known import told  # most of a child's start, where its job needs less
 
         told(own_engines)
+    if "sim.engine" in sys.modules:
+        from sim.engine.compiling import listen
+
+        listen(lambda begins: send(answers, (COMPILING, begins, b"", False)))
     at_first = _taken()
     _limit(at_first + memory_bytes)
     send(answers, ("ready", None, b"", False))

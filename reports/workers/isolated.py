@@ -7,23 +7,27 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Generator, Iterator, Sequence
+import time
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from queue import SimpleQueue
-from typing import IO, Generic, TypeVar, cast
+from typing import IO, Generic, Self, TypeVar, cast
 
 from models.errors import CrankcheckError
 from reports.workers import one_thread
-from reports.workers.child import main, receive, send
+from reports.workers.child import COMPILING, main, receive, send
+from reports.workers.child import Answer as ChildAnswer
 from sim.own_engine.known import spellings
 
 Result = TypeVar("Result")
 LIMIT_S = 60.0
 MEMORY_GB = 2.0
 MOST_S, MOST_GB = 1e6, 1e4
+COMPILING_S = 1800.0
+"""Longest time for an engine's compiling in a job [s], which is no part of the job's."""
 START_S = 60.0
 """Longest time for the imports of a child [s]."""
 START = (
@@ -91,16 +95,14 @@ class Isolated(Generic[Result]):
             return child
         jobs, answers = _pipes(child)
         limit_s = self.limits.time_s
-        with _watched(child, limit_s) as late:
-            try:
-                send(jobs, (function, arguments))
-                raw = receive(answers)
-            except OSError:
-                raw = b""
-        if not raw:
-            return self._lost(child, f"no end within {limit_s:g} s" if late.is_set() else "")
-        how, value, raised, worn = pickle.loads(raw)
-        if worn or late.is_set():  # an answer in the last moment stands; the child is gone
+        answer: ChildAnswer | None = None
+        with _Clock(child, limit_s) as clock, contextlib.suppress(OSError):
+            send(jobs, (function, arguments))
+            answer = _answer(answers, clock)
+        if answer is None:
+            return self._lost(child, f"no end within {limit_s:g} s" if clock.late.is_set() else "")
+        how, value, raised, worn = answer
+        if worn or clock.late.is_set():  # an answer in the last moment stands; the child is gone
             self._end(child)
         return cast(Result, value) if how == "done" else Lost(how, str(value), _unpacked(raised))
 
@@ -131,12 +133,12 @@ class Isolated(Generic[Result]):
             child.kill()
         jobs, answers = _pipes(child)
         ready = b""
-        with _watched(child, START_S) as late, contextlib.suppress(OSError):
+        with _Clock(child, START_S) as clock, contextlib.suppress(OSError):
             send(jobs, (function, spellings()))
             ready = receive(answers)
-        if ready and not late.is_set():
+        if ready and not clock.late.is_set():
             return child
-        return self._lost(child, f"no start within {START_S:g} s" if late.is_set() else "")
+        return self._lost(child, f"no start within {START_S:g} s" if clock.late.is_set() else "")
 
     def _lost(self, child: subprocess.Popen[bytes], late: str) -> Lost:
         """Return why a child gave no answer; ``late`` is the exceeded time limit, in words."""
@@ -158,23 +160,50 @@ class Isolated(Generic[Result]):
         return code
 
 
-@contextlib.contextmanager
-def _watched(child: subprocess.Popen[bytes], limit_s: float) -> Iterator[threading.Event]:
-    """Kill the child when the block takes longer; the event says whether that happened."""
-    late = threading.Event()
+class _Clock:
+    """The time of a job: when it is over, the child is killed, and the job ``late``. While an
+    engine compiles, `COMPILING_S` alone is the limit, and its time is left out of the job's."""
 
-    def end() -> None:
-        late.set()
-        child.kill()
+    def __init__(self, child: subprocess.Popen[bytes], limit_s: float) -> None:
+        self.child, self.left_s, self.late = child, limit_s, threading.Event()
 
-    clock = threading.Timer(limit_s, end)
-    clock.daemon = True
-    clock.start()
-    try:
-        yield late
-    finally:
-        clock.cancel()
-        clock.join()  # it may be at it, and must not kill the next job
+    def __enter__(self) -> Self:
+        self._start(self.left_s)
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._stop()
+
+    def compiles(self, begins: bool) -> None:
+        """Change from the time of the job to that of compiling, or back."""
+        self._stop()
+        if begins:
+            self.left_s -= time.monotonic() - self.began
+        self._start(COMPILING_S if begins else max(self.left_s, 0.0))
+
+    def _start(self, limit_s: float) -> None:
+        self.began = time.monotonic()
+        self.timer = threading.Timer(limit_s, self._end)
+        self.timer.daemon = True
+        self.timer.start()
+
+    def _stop(self) -> None:
+        self.timer.cancel()
+        self.timer.join()  # it may be at it, and must not kill the next job
+
+    def _end(self) -> None:
+        self.late.set()
+        self.child.kill()
+
+
+def _answer(stream: IO[bytes], clock: _Clock) -> ChildAnswer | None:
+    """Return the answer to a job; None where the child ended without one."""
+    while raw := receive(stream):
+        answer: ChildAnswer = pickle.loads(raw)
+        if answer[0] != COMPILING:
+            return answer
+        clock.compiles(bool(answer[1]))
+    return None
 
 
 def _unpacked(raised: bytes) -> Exception | None:

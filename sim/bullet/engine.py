@@ -8,13 +8,10 @@ Forces are not read: those of joints of a chain of links are off by 60 % at any 
 """
 
 import math
-import os
 import weakref
 from collections.abc import Mapping
 from dataclasses import replace
-from importlib import import_module
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,24 +27,12 @@ from models.scene.loads import ConstantFriction
 from sim.bullet import settings as own
 from sim.engine import Drive, Facts, Settings
 from sim.engine.acting import Pushes
+from sim.engine.imported import imported
 from sim.engine.settings import shipped_engine
 from sim.engine.ties import refuse_driver_angle, refuse_massless
 from sim.engine.tree_session import TreeSession
 
-
-def _imported() -> Any:
-    """Import the package without its line on the standard error of the process."""
-    kept = os.dup(2)
-    try:
-        with Path(os.devnull).open("w") as nowhere:
-            os.dup2(nowhere.fileno(), 2)
-        return import_module("pybullet")
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-
-
-pb = _imported()
+pb = imported("pybullet")
 VERSION = version("pybullet")
 ORIGIN, UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 UNLIMITED = 1e15

@@ -203,7 +203,7 @@ class Engine:
     ``applies_cams_by_contact`` scenes with these; with springs `Facts.springs` has each. Without
     ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the beams.
     ``precision`` is that of the engine's numbers, ``floor`` the pure error of places that it leaves
-    at any step.
+    at any step; ``numbers_with`` gives both where settings choose them.
     """
 
     name: str
@@ -228,6 +228,12 @@ class Engine:
     floor: float = AT_ROUNDING
     unreported: Callable[[Scene, Drive], Unreported] = lambda scene, drive: REPORTED
     no_forces: str = ""
+    numbers_with: Callable[[Settings], tuple[Precision, float]] | None = None
+
+    def numbers(self, settings: Settings) -> tuple[Precision, float]:
+        """Return precision and floor with a complete set of settings."""
+        chosen = self.numbers_with
+        return chosen(settings) if chosen else (self.precision, self.floor)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Settings of a run: a profile's, overridden one by one; and engines that come with settings."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -107,18 +107,23 @@ def shipped_engine(
     **more: Any,
 ) -> Engine:
     """Declare an engine that comes with crankcheck, by its module of settings: all apply loads,
-    constant friction and springs. It reports forces and accelerations ``of_states``, or else forces
-    of steps alone; ``more`` are other fields, by default without settings in seconds."""
+    constant friction and springs. Its ``VARIANTS``, if any, are profiles too. It reports forces and
+    accelerations ``of_states``, or else forces of steps alone; ``more`` are other fields, by
+    default without settings in seconds."""
+    profiles: Sequence[Profile] = (own.AS_SHIPPED, own.TUNED, *getattr(own, "VARIANTS", ()))
+    fields = {
+        "in_seconds": lambda settings: (),
+        "forces_of": "states" if of_states else "steps",
+        "applies_loads": True,
+        "applies_constant_friction": True,
+        "applies_springs": True,
+    }
     return Engine(
         own.TUNED.engine,
-        {"as-shipped": own.AS_SHIPPED, "tuned": own.TUNED},
+        {profile.name: profile for profile in profiles},
         version=lambda: version,
         check=own.checked,
         open=session,
         reports_accelerations=of_states,
-        forces_of="states" if of_states else "steps",
-        applies_loads=True,
-        applies_constant_friction=True,
-        applies_springs=True,
-        **{"in_seconds": lambda settings: (), **more},
+        **{**fields, **more},
     )

@@ -7,6 +7,7 @@ whose control comes from `sim.engine.drive`.
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,6 +32,9 @@ from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 class MujocoSession(SteppedModel):
     """A scene in MuJoCo. Velocities of all integrators except RK4 lag by half a step."""
 
+    _calls_back: ClassVar[bool] = True
+    """True if it calls back in each evaluation of the forces, for loads that follow the motion."""
+
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> None:
@@ -45,16 +49,17 @@ class MujocoSession(SteppedModel):
         self._hold(model, keyframe=0)
         self._stays = not model.nu
         self._controlled = options.has_control(scene, chosen)
-        staged = dt_s if chosen.free and own.integrator(settings, drive) == "RK4" else 0.0
-        self._loading = Loading(scene, model, self._tree.limbs, drive, state.time_s, staged)
+        staged = chosen.free and self._calls_back and own.integrator(settings, drive) == "RK4"
+        stages_dt_s = dt_s if staged else 0.0
+        self._loading = Loading(scene, model, self._tree.limbs, drive, state.time_s, stages_dt_s)
         self._cams = CamRelations(scene, self._tree, model, dt_s)
         self._following, self._relate = self._follow, self._cams.set
         self._tendons = spring_tendons(scene, state, self._tree)
-        driven, sense = driven_freedom(scene, self._tree.limbs)
+        driven, self._sense = driven_freedom(scene, self._tree.limbs)
         self._crank = int(model.joint(driven).dofadr[0])
         if not chosen.free:
             start = drives.start_speed(scene.driver.law, state.time_s, dt_s, self._shift)
-            self._data.qvel[self._crank] = sense * start
+            self._data.qvel[self._crank] = self._sense * start
         self._pushes = np.empty(0)
         self._forward()
 

@@ -152,6 +152,11 @@ class Loading:
             if self._dt and load.stroke != "both"
         }
 
+    @property
+    def by_motion(self) -> list[str]:
+        """Loads that depend on the motion, by name."""
+        return [self.loads[k].name for k in self._of_motion]
+
     def at_times(self, time_s: Array) -> Array:
         """Return the controls (T, n), 0 where they follow from the motion."""
         columns = np.zeros((len(time_s), len(self.loads)))

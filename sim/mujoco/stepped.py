@@ -143,9 +143,13 @@ class SteppedModel(ABC):
                 look(model, data)
             push[k] = data.qacc
             data.qacc_warmstart[:] = data.qacc
-        rates, lag = 1 + model.nq, self._shift * self._dt
-        bodies = self._placed(states[:, 1:rates], states[:, rates : rates + model.nv], push, lag)
-        return Poses(self._start_s + self._dt * at, bodies, lag)
+        return self._posed(states, at, push)
+
+    def _posed(self, states: Array, at: Array, push: Array) -> Poses:
+        """Return the poses of states with their accelerations."""
+        rates, lag = 1 + self._model.nq, self._shift * self._dt
+        q, rate = states[:, 1:rates], states[:, rates : rates + self._model.nv]
+        return Poses(self._start_s + self._dt * at, self._placed(q, rate, push, lag), lag)
 
     @contextmanager
     def _at_work(self) -> Iterator[None]:

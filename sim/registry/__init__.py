@@ -23,19 +23,35 @@ ENGINES: Mapping[str, str] = {
     "drake": "..drake",
     "dart": "..dart",
     "simbody": "..simbody",
+    "mjx": "..mjx",
+    "mujoco-warp": "..mujoco_warp",
+    "newton": "..newton",
 }
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
 """Default engine where one is enough."""
 Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"]
 """Optional parts of an engine."""
-Formulation = Literal["soft constraints", "constraint impulses", "constraint equations", "own"]
+Formulation = Literal[
+    "soft constraints", "constraint impulses", "constraint equations", "by solver", "own"
+]
 """Ways of holding a loop: by forces that give way; by impulses that correct velocities, once or in
-sweeps; by the equations of the joints, solved in each step; one that is not known here."""
+sweeps; by the equations of the joints, solved in each step; another with each of its solvers; one
+that is not known here."""
 
 
 class BrokenEngineError(EngineError):
     """An installed engine that fails on import."""
+
+
+@dataclass(frozen=True)
+class Fewer:
+    """Length of a verification, and its scenes where none is named, of an engine whose steps take
+    long."""
+
+    steps_per_turn: float = 180.0
+    turns: float = 1.0
+    scenes: tuple[str, ...] = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever")
 
 
 @dataclass(frozen=True)
@@ -48,7 +64,8 @@ class Declaration:
     too, with a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`,
     `Spoiler`, `Viewer`, `Reader` or `ForceRecipe`. An engine that runs ``apart`` may end its
     process: it gets one of its own. ``tried`` starts every version that was compared with the
-    reference, ``wheels`` says for which systems there are any, where not for all.
+    reference, ``wheels`` says for which systems there are any, where not for all. ``fewer`` is the
+    default verification of an engine whose steps take long.
     """
 
     package: str
@@ -60,6 +77,7 @@ class Declaration:
     tried: str = ""
     wheels: str = ""
     pip_name: str = ""
+    fewer: Fewer | None = None
 
     @property
     def distribution(self) -> str:
@@ -151,7 +169,7 @@ def _loaded(name: str, part: str) -> object:
             raise
         # A half-removed package leaves of an engine a module that lacks attributes.
         lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
-        if (lacking or package).split(".")[0] != package:
+        if (lacking or package).split(".")[0] != package.split(".")[0]:
             raise
         raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
     return getattr(module, part.upper())

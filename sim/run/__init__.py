@@ -210,7 +210,7 @@ def run(
     except EngineError as error:
         return replace(blank, status="unsupported", reason=str(error))
     facts = session.facts()
-    refuse_other_model(scene, state, facts, dt_s, drive, open_m, chosen.precision)
+    refuse_other_model(scene, state, facts, dt_s, drive, open_m, told.precision)
     # Later loads may move a scene that almost rests: a radian in the whole run, at least.
     own = pace(scene, state, drive)
     runaway = RUNAWAY * max(own, 1.0 / (dt_s * steps)) if own else math.inf
@@ -240,6 +240,8 @@ def setup(
         An unknown engine, profile or setting, or a missing package.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
+    asked = resolved(profile_of(chosen, profile), settings)
+    precision, floor = chosen.numbers(asked)
     return Setup(
         scene=scene.name,
         engine=chosen.name,
@@ -251,11 +253,11 @@ def setup(
         every=every,
         start_s=state.time_s,
         reports_accelerations=chosen.reports_accelerations,
-        asked=resolved(profile_of(chosen, profile), settings),
+        asked=asked,
         with_forces=with_forces,
         forces_of=chosen.forces_of if with_forces else "nothing",
-        precision=chosen.precision,
-        floor=chosen.floor,
+        precision=precision,
+        floor=floor,
         unreported=chosen.unreported(scene, drive) if with_forces else REPORTED,
     )
 

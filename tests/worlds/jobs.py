@@ -6,6 +6,7 @@ import time
 from types import ModuleType
 
 from models.errors import CrankcheckError, SceneError
+from sim.engine.compiling import compiling
 
 _held: list[bytearray] = []
 
@@ -65,3 +66,11 @@ def be_strange() -> None:
     exec("class StrangeError(Exception):\n    pass", vars(module))
     sys.modules[module.__name__] = module
     raise module.StrangeError("of a module that is there alone")
+
+
+def compile_long(seconds: float, then: float) -> str:
+    """Say that an engine compiles for so long; work for ``then`` seconds after it."""
+    with compiling():
+        time.sleep(seconds)
+    time.sleep(then)
+    return "compiled"

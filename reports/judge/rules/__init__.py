@@ -1,7 +1,8 @@
 """The rules, by ID. A verdict on a cell consists of their findings alone.
 
 CC101, 109, 115, 117, 119, 124 and 126 stand in `log`, CC110, 118 and 125 in `steps`, CC111, 112 and
-134 in `reference`, CC116 in `limits`; all others with their quantity, in `reports.quantities`.
+134 in `reference`, CC116 in `limits`, CC135 in `loops`; all others with their quantity, in
+`reports.quantities`.
 """
 
 from collections.abc import Iterable
@@ -9,6 +10,7 @@ from dataclasses import replace
 
 from reports.judge.rules import log
 from reports.judge.rules.limits import LIMITS, StartWithin
+from reports.judge.rules.loops import LoopsHold
 from reports.judge.rules.reference import ReferenceCertain, TruthEnds, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
 from reports.judge.rules.steps import ErrorShrinks, ErrorSmooth, ForcesShrink
@@ -29,6 +31,7 @@ _ALL: tuple[Rule, ...] = (
     ForcesShrink(),
     log.NothingContradicts(),
     TruthEnds(),
+    LoopsHold(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108", "CC114", "CC116")
@@ -52,7 +55,7 @@ def judge(evidence: Evidence, rules: Iterable[Rule] | None = None) -> tuple[Find
 def _cure(finding: Finding, evidence: Evidence) -> str:
     """Return the cure of a rule for this profile, with the result of a trial. Where a run did not
     end well only the status needs a cure: the rest follows from it."""
-    if evidence.status != "ok" and finding.rule != "CC101":
+    if evidence.status != "ok" and finding.rule not in ("CC101", "CC135"):
         return ""
     cure = RULES[finding.rule].cure
     if evidence.errors is not None:

@@ -160,6 +160,18 @@ def test_what_no_limit_holds_has_rules_of_its_own(evidence: Evidence, rule: str,
     assert rule != "CC115" or found.text == text
 
 
+@pytest.mark.parametrize("status", ["ok", "diverged"])
+def test_a_pin_that_holds_nothing_leaves_the_mechanism_two_freedoms_more(status: str) -> None:
+    torn = replace(with_row(row("gap", maximum=0.06)), status=status, gated=False)
+    found = by_rule(torn)["CC135"]
+    assert found.level == "advice"
+    assert "loop not enforced: pin rocker open by up to 0.06" in found.text
+    assert "2 freedoms more" in found.text
+    assert found.cure.startswith("Look at whether the solver enforces joints that close loops")
+    for held in (0.04, math.nan):
+        assert "CC135" not in by_rule(with_row(row("gap", maximum=held)))
+
+
 def test_an_error_that_does_not_shrink_is_advice_that_names_the_floor() -> None:
     found = by_rule(replace(HEALTHY, convergence=FLAT))["CC110"]
     assert found.level == "advice"

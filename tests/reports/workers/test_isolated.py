@@ -44,6 +44,13 @@ def test_the_time_limit_is_for_each_job(monkeypatch: pytest.MonkeyPatch) -> None
             assert all(timer.finished.is_set() for timer in Noted.made)
 
 
+def test_the_time_of_compiling_is_no_part_of_a_jobs() -> None:
+    with closing(Isolated[str](Limits(0.5))) as isolated:
+        assert isolated.call(jobs.compile_long, 0.7, 0.0) == "compiled"
+        late = isolated.call(jobs.compile_long, 0.1, 3600.0)
+    assert late == Lost("timeout", "no end within 0.5 s")
+
+
 class Noted(threading.Timer):
     """A timer that can be looked at."""
 

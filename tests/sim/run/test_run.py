@@ -301,3 +301,10 @@ def test_engines_carry_a_redundant_link_along(name: str) -> None:
         assert np.abs(off).max() < 1e-4
     assert set(result.gaps) == {"A", "B", "C", "D", "F", "G"}
     assert max(float(gap.max()) for gap in result.gaps.values()) < 2e-5
+
+
+def test_settings_may_choose_the_precision_of_an_engine() -> None:
+    chosen = replace(engine("pymunk"), numbers_with=lambda _: ("single", 1e-6))
+    done = ran(engine=chosen, steps=10)
+    assert (done.precision, done.floor) == ("single", 1e-6)
+    assert engine("pymunk").numbers({}) == (engine("pymunk").precision, engine("pymunk").floor)

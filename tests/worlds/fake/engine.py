@@ -82,6 +82,9 @@ class FakeEngine:
         """It has its places from the reference."""
         return "solved"
 
+    def numbers(self, settings: Settings) -> tuple[Precision, float]:
+        return self.precision, self.floor
+
     def unreported(self, scene: Scene, drive: Drive) -> Unreported:
         return REPORTED
 

@@ -1,0 +1,12 @@
+"""MuJoCo Warp: MuJoCo written anew in Warp, by its package mujoco-warp."""
+
+from sim.registry import Declaration, Fewer
+
+DECLARATION = Declaration(
+    "mujoco_warp",
+    formulation="soft constraints",
+    precision="single",
+    tried="4.0.",
+    pip_name="mujoco-warp",
+    fewer=Fewer(),
+)

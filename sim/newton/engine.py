@@ -1,0 +1,260 @@
+"""Newton: links and joints, loops closed by ball joints, stepped by one of its solvers."""
+
+import math
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import numpy as np
+
+from models.array import Array
+from models.errors import EngineError
+from models.mjcf.forces import planned
+from models.mjcf.tree import Limb, driven_freedom
+from models.motion import State
+from models.scene import GROUND, Point, Scene
+from models.scene import joints as pairs
+from models.scene.joints import Frame, turned
+from sim.engine import Drive, Facts, Settings
+from sim.engine.acting import Push, Pushes
+from sim.engine.compiling import compiling
+from sim.engine.heavy_driver import HeavyDriverSession
+from sim.engine.settings import shipped_engine
+from sim.engine.ties import refuse_driver_angle, refuse_massless
+from sim.newton import DECLARATION
+from sim.newton import settings as own
+from sim.newton.solvers import MAXIMAL, made, newton, register, wp
+
+
+def _version() -> str:
+    """Return the version, with that of the MuJoCo of its solver."""
+    try:
+        return f"{version('newton')} (mujoco {version('mujoco')})"
+    except PackageNotFoundError:
+        return version("newton")
+
+
+VERSION = _version()
+
+
+class NewtonSession(HeavyDriverSession):
+    """A session with one world on the processor. A step moves by the velocities at its end."""
+
+    name = "newton"
+    tangent = math.inf
+    shift = -0.5
+
+    def __init__(
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
+    ) -> None:
+        own.checked(settings)
+        refuse_driver_angle(scene, self.name)
+        if driven_by == "servo" or (driven_by != "free" and scene.driver.is_inner):
+            raise EngineError(
+                f"{scene.name}: motors in newton are not offered by crankcheck; drive a link on "
+                "the ground, prescribed"
+            )
+        super().__init__(scene, state, settings, dt_s, driven_by, 1)
+        self.end = (0.0, 0.0)
+        self.rubbing, self.solver_name = [], str(settings["solver"])
+        self.maximal = self.solver_name in MAXIMAL
+        self.tree = planned(scene, state, delay_s=self.shift * dt_s)
+        self.model = self._model()
+        self.from_value, self.end = 0.0, (0.0, 0.0)
+        if self.led:
+            driven, _ = driven_freedom(scene, self.tree.limbs)
+            names = [freedom.name for limb in self.tree.limbs for freedom in limb.freedoms]
+            self.driven = names.index(driven)
+            self.from_value = float(scene.driver.law.at(np.array([state.time_s]))[0][0])
+        with compiling():
+            self._start(made(self.model, settings, dt_s))
+            self.once()  # compiles all kernels
+        self._start(made(self.model, settings, dt_s))
+        self.begin()
+
+    def _model(self) -> Any:
+        builder = newton.ModelBuilder()
+        register(builder, self.solver_name)
+        builder.gravity = wp.vec3(*self.scene.gravity_m_s2, 0.0)
+        self.index = {GROUND: -1}
+        for limb in self.tree.limbs:
+            self.index[limb.body] = self._link(builder, limb.body)
+        self.joint = [self._joint(builder, limb) for limb in self.tree.limbs]
+        for roots in self._articulations():
+            builder.add_articulation(roots)
+        for closure in self.tree.closures:
+            first, last = sorted(closure.bodies, key=[*self.index].index)
+            ends = (self.bodies.anchor(name, closure.point) for name in (first, last))
+            here, there = (transform(place, 0.0) for place in ends)
+            builder.add_joint_ball(
+                self.index[first], self.index[last], parent_xform=here, child_xform=there
+            )
+        return builder.finalize(device="cpu")
+
+    def _link(self, builder: Any, name: str) -> int:
+        (mass, inertia), frame = pairs.mass_of(self.scene, name), self.frame_of(name)
+        led = name == self.led
+        if led:  # nothing is read of it, and it may have no mass
+            mass, inertia = 1.0, pairs.inertia_scale(self.scene)
+        else:
+            turns = name not in self.fixed
+            refuse_massless(self.scene, self.name, name, turns=turns)
+        return int(
+            builder.add_link(
+                xform=transform(frame.origin, frame.theta),
+                mass=mass,
+                inertia=wp.mat33(np.diag([inertia or mass] * 3)),
+                lock_inertia=True,
+                is_kinematic=led and self.maximal,
+                label=name,
+            )
+        )
+
+    def _joint(self, builder: Any, limb: Limb) -> int:
+        """Add the joint of a limb, whose coordinates count from the start."""
+        kinds = [freedom.kind for freedom in limb.freedoms]
+        if limb.body == self.led and len(kinds) > 1:
+            raise EngineError(
+                f"{self.scene.name}: the driven block has no mass of its own, and newton drives a "
+                "body; give it one"
+            )
+        axis = next((each.axis_rad for each in limb.freedoms if each.kind == "slide"), 0.0)
+        anchor = next((each.anchor for each in limb.freedoms if each.kind == "hinge"), (0.0, 0.0))
+        ahead = turned(anchor, limb.angle_rad)
+        place = limb.offset[0] + ahead[0], limb.offset[1] + ahead[1]
+        ends = {
+            "parent_xform": transform(
+                self.bodies.from_centre(limb.parent, place), limb.angle_rad + axis
+            ),
+            "child_xform": transform(self.bodies.from_centre(limb.body, anchor), axis),
+        }
+        flywheel = 0.0
+        if limb.body == self.led and not self.maximal:
+            flywheel = float(self.settings["flywheel_ratio"]) * pairs.inertia_scale(self.scene)
+            flywheel /= self.scene.driver_arm_m**2
+        along, about = (
+            newton.ModelBuilder.JointDofConfig(axis=way, armature=flywheel)
+            for way in (wp.vec3(1.0, 0.0, 0.0), wp.vec3(0.0, 0.0, 1.0))
+        )
+        between = self.index[limb.parent], self.index[limb.body]
+        if kinds == ["hinge"]:
+            return int(builder.add_joint_revolute(*between, axis=about, **ends))
+        if kinds == ["slide"]:
+            return int(builder.add_joint_prismatic(*between, axis=along, **ends))
+        return int(
+            builder.add_joint_d6(*between, linear_axes=[along], angular_axes=[about], **ends)
+        )
+
+    def _articulations(self) -> list[list[int]]:
+        """Return the joints of each tree on the ground, the limbs being depth first."""
+        trees: list[list[int]] = []
+        for limb, joint in zip(self.tree.limbs, self.joint, strict=True):
+            if limb.parent == GROUND:
+                trees.append([])
+            trees[-1].append(joint)
+        return trees
+
+    def _start(self, solver: Any) -> None:
+        """Put the state of the start into the model, for a solver that has not stepped."""
+        self.solver, self.control = solver, self.model.control()
+        self.now, self.next, self.between = (self.model.state() for _ in range(3))
+        rates = [freedom.rate for limb in self.tree.limbs for freedom in limb.freedoms]
+        self.now.joint_qd.numpy()[: len(rates)] = rates
+        for name in self.names:
+            frame = self.frame_of(name)
+            self.now.body_qd.numpy()[self.index[name]] = twist(frame)
+        if not self.maximal:
+            newton.eval_fk(self.model, self.now.joint_q, self.now.joint_qd, self.now)
+
+    def once(self) -> None:
+        self.solver.step(self.now, self.next, self.control, None, self.dt)
+        self.now, self.next = self.next, self.now
+        if self.led and self.solver_name == "Kamino":  # which moves no led body by its velocity
+            self._lead(*self.end)
+
+    def turn(self, place: float | None, speed: float) -> None:
+        begin = self.from_value if place is None else place
+        self.end = begin + self.dt * speed, speed
+        ahead = self.solver_name == "XPBD" and place is not None  # it closes joints at the end
+        self._lead(self.end[0] if ahead else begin, speed)
+
+    def _lead(self, place: float, speed: float) -> None:
+        """Put the led body where its driver's coordinate is ``place``."""
+        ahead, slider = place - self.from_value, self.scene.driver.slider
+        (x, y), theta = self.led_frame.origin, self.led_frame.theta
+        if slider is None:
+            frame = Frame((x, y), theta + ahead, (0.0, 0.0), speed)
+        else:
+            u, v = turned((1.0, 0.0), self.scene.sliders[slider].direction_rad)
+            frame = Frame((x + ahead * u, y + ahead * v), theta, (speed * u, speed * v), 0.0)
+        row = self.index[str(self.led)]
+        self.now.body_q.numpy()[row] = tuple(transform(frame.origin, frame.theta))
+        self.now.body_qd.numpy()[row] = twist(frame)
+        self.now.joint_q.numpy()[self.driven] = ahead
+        self.now.joint_qd.numpy()[self.driven] = speed
+
+    def lead(self, frame: Frame, push: Push) -> None:
+        raise NotImplementedError
+
+    def run_motor(self, speed: float) -> None:
+        raise NotImplementedError
+
+    def push(self, pushes: Pushes) -> None:
+        forces = self.now.body_f.numpy()
+        for name in (name for name in self.names if name != self.led):
+            fx, fy, moment = pushes.on_bodies[name]
+            forces[self.index[name]] = fx, fy, 0.0, 0.0, 0.0, moment
+
+    def look(self) -> Array:
+        rows = [self.index[name] for name in self.names]
+        there = self.now if self.maximal else self._at_rates()
+        q = self.now.body_q.numpy()[rows].astype(np.float64)
+        rate = there.body_qd.numpy()[rows].astype(np.float64)
+        theta = 2.0 * np.arctan2(q[:, 5], q[:, 6])
+        return np.column_stack([q[:, :2], theta, rate[:, :2], rate[:, 5]])
+
+    def _at_rates(self) -> Any:
+        """Return the bodies at the instant of the joint rates."""
+        now, there = self.now, self.between
+        tree = slice(sum(len(limb.freedoms) for limb in self.tree.limbs))  # loops come after it
+        there.joint_q.assign(now.joint_q)
+        there.joint_q.numpy()[tree] += self.shift * self.dt * now.joint_qd.numpy()[tree]
+        newton.eval_fk(self.model, there.joint_q, now.joint_qd, there)
+        return there
+
+    def facts(self) -> Facts:
+        mass, inertia = self.model.body_mass.numpy(), self.model.body_inertia.numpy()
+        matter = {
+            name: (
+                float(mass[self.index[name]]),
+                math.inf if name in self.fixed else float(inertia[self.index[name]][2, 2]),
+            )
+            for name in self.names
+            if name != self.led
+        }
+        centre = {name: self.bodies.centre[name] for name in matter}
+        x, y, _ = self.model.gravity.numpy().reshape(-1, 3)[0]
+        held = own.holds(self.settings, self.dt, self.drive)
+        return self.facts_of(VERSION, matter, centre, (float(x), float(y)), held)
+
+
+def transform(place: Point, angle: float) -> Any:
+    """Return a transform in the plane."""
+    turn = wp.quat(0.0, 0.0, math.sin(0.5 * angle), math.cos(0.5 * angle))
+    return wp.transform(wp.vec3(*place, 0.0), turn)
+
+
+def twist(frame: Frame) -> tuple[float, ...]:
+    """Return the velocity of a frame's origin and its rate of turning."""
+    return (*frame.velocity, 0.0, 0.0, 0.0, frame.omega)
+
+
+ENGINE = shipped_engine(
+    own,
+    VERSION,
+    NewtonSession,
+    holds=own.holds,
+    in_seconds=own.in_seconds,
+    precision=DECLARATION.precision,
+    floor=2e-6,
+    applies_constant_friction=False,
+)
