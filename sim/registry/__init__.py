@@ -47,11 +47,17 @@ class BrokenEngineError(EngineError):
 @dataclass(frozen=True)
 class Fewer:
     """Length of a verification, and its scenes where none is named, of an engine whose steps take
-    long."""
+    long; ``batch_steps`` are the steps of a batch, None for ``turns`` of them."""
 
     steps_per_turn: float = 180.0
     turns: float = 1.0
+    batch_steps: int | None = None
     scenes: tuple[str, ...] = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever")
+
+    def lasts(self, *, in_batch: bool) -> str:
+        """Return the length of a run in words."""
+        short = in_batch and self.batch_steps
+        return f"{self.batch_steps} steps in a batch" if short else f"{self.turns:g} turn"
 
 
 @dataclass(frozen=True)
