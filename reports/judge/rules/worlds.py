@@ -22,7 +22,7 @@ class OwnMotion:
         texts = [f"{count(batch.lost, 'world')} of {batch.count} not logged"] * bool(batch.lost)
         holds = batch.holds.items()
         pairs = (f"world {world} holds the motion of world {of}" for world, of in holds)
-        texts += [few(pairs, 3)] * bool(batch.holds)
+        texts += [few(pairs, 4)] * bool(batch.holds)
         if texts:
             return Finding(self.id, "fail", "; ".join(texts))
         return Finding(self.id, "pass", f"each of {count(batch.count, 'world')} has its own motion")
@@ -53,7 +53,7 @@ class AsAlone:
         return Finding(
             self.id,
             "pass" if within else "fail",
-            f"{text}: {batch.why}" if within else text + " (to be the same)" * (not batch.why),
+            text + (f": {batch.why}" if batch.why else ", with which it has to agree to the bit"),
             batch.difference,
             batch.bound if batch.why else 0.0,
         )
