@@ -14,6 +14,7 @@ from models.motion import State
 from models.scene import Scene
 from reports.compare.worlds import difference
 from sim.engine import Batches, Log, Run
+from sim.own_engine.watched import BrokenContractError, watched
 from sim.registry import engine
 from sim.run import run
 from sim.run.worlds import run_worlds
@@ -88,3 +89,16 @@ def test_a_world_that_flies_apart_ends_and_the_others_go_on() -> None:
 
     worlds: list[Run] = run_worlds(FOURBAR, starts(FOURBAR, 3), recording(torn), **options(FOURBAR))
     assert [one.status for one in worlds] == ["diverged", "ok", "ok"]
+
+
+def test_logs_of_an_engine_of_a_user_are_checked_one_by_one() -> None:
+    def short(*asked: Any) -> Sequence[Log]:
+        first, second = MUJOCO.batches.record(*asked)
+        cut = replace(second.poses, time_s=second.poses.time_s[:-1])
+        return [first, replace(second, poses=cut)]
+
+    asked = FOURBAR, starts(FOURBAR, 2)
+    sound = run_worlds(*asked, watched("own:ENGINE", MUJOCO), **options(FOURBAR))
+    assert [one.status for one in sound] == ["ok", "ok"]
+    with pytest.raises(BrokenContractError, match=r"batches\.record gave 20 samples"):
+        run_worlds(*asked, watched("own:ENGINE", recording(short)), **options(FOURBAR))
