@@ -21,17 +21,20 @@ LOOKS = 40
 class Batch:
     """Worlds of a batch, which are numbered from 0.
 
-    ``worst`` is the world with the largest part of a limit. Of ``lost`` worlds there is no log;
-    ``holds`` has the worlds with the motion of another, by that of each. ``alone`` are those that
-    were run alone too, and ``difference`` is the largest difference of place from these, in rad or
-    over the longest link, in the world ``at``; ``exact`` if all series are the same to the bit. It
-    is at most ``bound``, because of ``why``; "" for an engine whose worlds are to be the same.
-    Costs are of a step of a world [microseconds], logged: in the batch, and median of those alone.
+    ``worst`` is the world with the largest part of a limit; ``error`` is the largest of place, pure,
+    in world ``error_in``. Of ``lost`` worlds there is no log; ``holds`` has the worlds with
+    the motion of another, by that of each. ``alone`` are those that were run alone too, and
+    ``difference`` is the largest of place from these, in rad or over the longest link, in world
+    ``at``; ``exact`` if all series are the same to the bit. It is at most ``bound``, because of
+    ``why``; "" for an engine whose worlds are to be the same. Costs are of a step of a world
+    [microseconds], logged: in the batch, and median of those alone.
     """
 
     count: int
     threads: int
     worst: int
+    error: float
+    error_in: int
     lost: int
     holds: Mapping[int, int]
     alone: tuple[int, ...]

@@ -17,11 +17,11 @@ from models.motion import State
 from models.scene import Scene
 from models.scene.driver import place_in_words
 from reports.compare.compare import Truth, compare, not_asked_for
-from reports.compare.errors import Departure
+from reports.compare.errors import Departure, largest
 from reports.compare.worlds import Batch, difference, evenly, holders
 from reports.judge.halving import Followed, followed
 from reports.judge.known import Judged, Names
-from reports.judge.rules import judge
+from reports.judge.rules import BATCHES, RULES, judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import limits
 from reports.output.numbers import count
@@ -141,6 +141,13 @@ class Checked(Judged):
         return max((part for part in parts if not math.isnan(part)), default=0.0)
 
     @property
+    def place_error(self) -> float:
+        """The largest pure error of place; infinite for one that is not finite, or none."""
+        rows = (self.errors.worst(name) for name in self.cell.way.placed) if self.errors else ()
+        worst = largest(filter(None, rows))
+        return worst.pure if worst and worst.finite else math.inf
+
+    @property
     def advice(self) -> tuple[Finding, ...]:
         return tuple(finding for finding in self.findings if finding.level == "advice")
 
@@ -204,10 +211,13 @@ def _in_batch(worlds: Sequence[_Runs], runner: CellRunner) -> Checked:
     apart = {k: difference(cell.scene, done[k], run) for k, run in alone.items()}
     at = max(apart, key=lambda k: apart[k][0])
     worst = max(range(len(each)), key=lambda k: (bool(each[k].failures), each[k].most_taken))
+    placed = [one.place_error for one in each]
     batch = Batch(
         count=cell.worlds,
         threads=cell.threads,
         worst=worst,
+        error=max(placed),
+        error_in=placed.index(max(placed)),
         lost=cell.worlds - len(done),
         holds=holders(cell.scene, done),
         alone=tuple(alone),
@@ -220,7 +230,14 @@ def _in_batch(worlds: Sequence[_Runs], runner: CellRunner) -> Checked:
         us_alone=median(run.cost.us_per_step for run in alone.values() if run.cost),
     )
     found = replace(each[worst], batch=batch)
-    return replace(found, findings=judge(found))
+    own = (_of_world(worst, finding) for finding in found.findings)
+    return replace(found, findings=(*own, *judge(found, [RULES[name] for name in BATCHES])))
+
+
+def _of_world(world: int, finding: Finding) -> Finding:
+    """Return a finding that names its world, unless it passes."""
+    passes = finding.level == "pass"
+    return finding if passes else replace(finding, text=f"world {world}: {finding.text}")
 
 
 def _existing(run: Run) -> CellRunner:

@@ -93,13 +93,23 @@ class VerifyRequest(VerifyOptions):
             from reports.page.build import printed_page  # whose packages nothing else here needs
 
             scenes = {one.cell.scene.name: one.cell.scene for one in checked}.values()
-            return printed_page(title, facts, as_html("".join(map(drawn, scenes)), *shows))
+            pictures = [*map(drawn, scenes), _of_batches(checked)]
+            return printed_page(title, facts, as_html("".join(pictures), *shows))
 
         files = contents(checked, facts, digests, diff, before) | {"verify.html": page}
         with outputs.written(files):
             present(console, self.format, title, *shows)
         mended = self.strict_known and any(one.mended for one in checked)
         return _code(checked, diff, progress) or int(mended)
+
+
+def _of_batches(checked: Sequence[Checked]) -> str:
+    """The diagram of batches, as SVG; "" where there are none."""
+    if not any(one.cell.worlds for one in checked):
+        return ""
+    from reports.figures.batches import batches_picture  # and its packages
+
+    return batches_picture([rows.cell_row(one) for one in checked])
 
 
 def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> int:

@@ -169,10 +169,10 @@ OF_FORCES_WORDS = (
 
 
 OF_BATCHES_WORDS = (
-    "Batches: the cranks of the worlds start spread over a turn; errors are those of the worst "
-    "world, numbered from 0. From alone: largest difference of place [rad, or of L] from at most "
-    f"{MOST_ALONE} worlds that are run alone too. Costs are those of a step of one world, logged, "
-    "one run at a time, without compiling; alone: the median of these."
+    "Batches: the cranks of the worlds, numbered from 0, start spread over a turn; errors are the "
+    "largest of all worlds. From alone: largest difference of place [rad, or of L] from at most "
+    f"{MOST_ALONE} worlds that are run alone too, 0 to the bit. Costs are those of a step of one "
+    "world, logged, one run at a time, without compiling; alone: the median."
 )
 
 

@@ -40,6 +40,7 @@ RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108", "CC114", "CC116")
 ELASTIC = ("CC131", "CC132", "CC133")
 FORCES = ("CC120", "CC121", "CC122", "CC123")
+BATCHES = ("CC136", "CC137")
 TUNABLE = ("CC101", "CC110", *PLACES)
 """Failures due to an engine's settings; failures of rates and forces follow from them."""
 

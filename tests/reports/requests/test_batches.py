@@ -35,19 +35,30 @@ def test_each_size_is_a_row_and_all_worlds_count(tmp_path: Path) -> None:
         assert (one["batch_lost"], one["batch_swapped"], one["trend"]) == (0, "", None)
         assert 0 <= one["batch_worst"] < one["worlds"]
         assert one["batch_us_per_step"] > 0 < one["batch_us_alone"]
-    assert many[0]["place_pure"] >= alone["place_pure"]
+        assert 0 <= one["batch_error_in"] < one["worlds"]
+    assert many[0]["batch_error"] >= alone["batch_error"] == alone["place_pure"]
 
 
 def test_the_verdict_is_that_of_the_worst_world() -> None:
     cell = replace(in_batch(FOURBAR, "mujoco", 90, converge=False), steps=10)
     sound = check(cell)
-    limit = 0.999 * sound.errors.worst("angle").pure
+    limit = 0.999 * sound.batch.error
     assert sound.verdict == "within"
     other = check(replace(cell, tolerance={"angle": limit}))
-    assert other.verdict == "out"
-    assert other.batch.worst == sound.batch.worst
+    assert (other.verdict, other.batch.worst) == ("out", sound.batch.error_in)
+    assert other.failures[0].text.startswith(f"world {sound.batch.error_in}: link ")
     alone = check(replace(cell, worlds=0, tolerance={"angle": limit}))
     assert (alone.verdict, alone.batch) == ("within", None)
+
+
+def test_the_page_draws_the_error_over_the_cost_of_a_world(tmp_path: Path) -> None:
+    page = tmp_path / "verify.html"
+    words = ["verify", "fourbar-lecture-1", "--engine", "mujoco", *SHORT, "-o", page]
+    for more, number in ((("--worlds", "1,2"), 1), ((), 0)):
+        assert crank_alone(*words, *more).exit_code == 0
+        text = page.read_text(encoding="utf-8")
+        assert text.count("cost per world and step") == number
+        page.unlink()
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
