@@ -21,8 +21,8 @@ LOOKS = 40
 class Batch:
     """Worlds of a batch, which are numbered from 0.
 
-    ``worst`` is the world with the largest part of a limit; ``error`` is the largest of place, pure,
-    in world ``error_in``. Of ``lost`` worlds there is no log; ``holds`` has the worlds with
+    ``worst`` is the world with the largest part of a limit; ``error`` is the largest one of place,
+    pure, in world ``error_in``. Of ``lost`` worlds there is no log; ``holds`` has the worlds with
     the motion of another, by that of each. ``alone`` are those that were run alone too, and
     ``difference`` is the largest of place from these, in rad or over the longest link, in world
     ``at``; ``exact`` if all series are the same to the bit. It is at most ``bound``, because of
