@@ -31,7 +31,6 @@ class Batch:
     """
 
     count: int
-    threads: int
     worst: int
     error: float
     error_in: int
@@ -103,4 +102,5 @@ def difference(scene: Scene, run: Run, alone: Run) -> tuple[float, bool]:
     one, other = placed(run.motion, size), placed(alone.motion, size)
     if one.shape != other.shape:
         return np.inf, False
-    return float(np.abs(one - other).max()), all(same)
+    apart = np.nan_to_num(np.abs(one - other), nan=np.inf)
+    return float(apart.max()), all(same)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import median
 from typing import Any, Literal
@@ -27,7 +27,7 @@ from reports.judge.tolerance import limits
 from reports.output.numbers import count
 from reports.protocol.length import SEGMENTS, GivenAs, Planned, Springs
 from reports.protocol.way import Way, way_of
-from sim.engine import Drive, Engine, Run, Settings, SettingValue
+from sim.engine import Drive, Engine, Run, SettingValue
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 from sim.run import run, setup
@@ -197,10 +197,9 @@ def _untimed(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Ch
 
 def _in_batch(worlds: Sequence[_Runs], runner: CellRunner) -> Checked:
     """Run the worlds of a cell as a batch, and return the worst of them, with the facts of all."""
-    cell, adapter = worlds[0].cell, worlds[0].adapter
-    states = [one.state for one in worlds]
-    given = cell.given, states, *worlds[0].names
-    done = runner(*given, threads=cell.threads, **worlds[0].options(1))
+    first, states = worlds[0], [one.state for one in worlds]
+    cell, adapter = first.cell, first.adapter
+    done = runner(cell.given, states, *first.names, threads=cell.threads, **first.options(1))
     if not done:
         return unfinished(cell, "crashed", "no world of the batch was logged")
     each = [
@@ -214,7 +213,6 @@ def _in_batch(worlds: Sequence[_Runs], runner: CellRunner) -> Checked:
     placed = [one.place_error for one in each]
     batch = Batch(
         count=cell.worlds,
-        threads=cell.threads,
         worst=worst,
         error=max(placed),
         error_in=placed.index(max(placed)),
@@ -224,20 +222,24 @@ def _in_batch(worlds: Sequence[_Runs], runner: CellRunner) -> Checked:
         difference=apart[at][0],
         at=at,
         exact=all(exact for _, exact in apart.values()),
-        bound=adapter.numbers(worlds[0].asked)[1],
+        bound=done[0].floor,
         why=adapter.batches.why if adapter.batches else "",
-        us_per_step=sum(run.cost.us_per_step for run in done if run.cost) / len(done),
-        us_alone=median(run.cost.us_per_step for run in alone.values() if run.cost),
+        us_per_step=_median_us(done),
+        us_alone=_median_us(alone.values()),
     )
     found = replace(each[worst], batch=batch)
-    own = (_of_world(worst, finding) for finding in found.findings)
+    own = (
+        finding
+        if finding.level == "pass"
+        else replace(finding, text=f"world {worst}: {finding.text}")
+        for finding in found.findings
+    )
     return replace(found, findings=(*own, *judge(found, [RULES[name] for name in BATCHES])))
 
 
-def _of_world(world: int, finding: Finding) -> Finding:
-    """Return a finding that names its world, unless it passes."""
-    passes = finding.level == "pass"
-    return finding if passes else replace(finding, text=f"world {world}: {finding.text}")
+def _median_us(runs: Iterable[Run]) -> float:
+    """Return the cost of a step in most runs; NaN where none has any."""
+    return median([run.cost.us_per_step for run in runs if run.cost] or [math.nan])
 
 
 def _existing(run: Run) -> CellRunner:
@@ -306,11 +308,6 @@ class _Runs:
     def names(self) -> tuple[str | Engine, str]:
         """The engine and its profile."""
         return self.given or self.cell.engine, self.cell.profile
-
-    @property
-    def asked(self) -> Settings:
-        """All settings."""
-        return resolved(profile_of(self.adapter, self.cell.profile), self.cell.settings)
 
     def options(self, finer: int) -> dict[str, Any]:
         """Return the options of a run with the step divided by ``finer``."""

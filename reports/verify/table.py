@@ -330,7 +330,8 @@ def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
 
 def _case(one: Checked) -> Element:
     cell = one.cell
-    case = case_of(f"{cell.engine}.{cell.profile}", cell.scene.name, f"{one.wall_s:.3f}")
+    name = f"{cell.scene.name}{cell.in_batch}"
+    case = case_of(f"{cell.engine}.{cell.profile}", name, f"{one.wall_s:.3f}")
     text = "\n".join(_line(finding) for finding in one.failures)
     head = one.failures[0].text if one.failures else "within tolerance"
     if not cell.gated:
