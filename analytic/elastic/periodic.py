@@ -8,9 +8,7 @@ are alike, once extrapolated. Source: Thesis on vibration of planar mechanisms w
 (2018), chapter 4.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve  # type: ignore[import-untyped]  # ships no stubs
@@ -19,6 +17,9 @@ from analytic.elastic.natural import FrequencySensitivity, resonance_text, sensi
 from analytic.elastic.reduced import ReducedForm
 from models.array import Array
 from models.errors import CrankcheckError
+
+STEPS = (1.0, -1.0, 0.5, -0.5)
+"""Steps of two central differences, which are extrapolated."""
 
 
 @dataclass(frozen=True)
@@ -45,27 +46,27 @@ def linearise(
     """
     count, m = len(time_s), form.size
     z, rates, seconds = about or (np.zeros((count, m)),) * 3
-    near, nothing = form.near(time_s), np.zeros(m)
+    base, nothing = form.at(time_s, z, rates, form.near(time_s)), np.zeros(m)
+    # All steps of a difference are one call, from joints that are closed but for the step.
+    times, at, turning, pulled, near = (
+        np.concatenate([each] * len(STEPS)) for each in (time_s, z, rates, seconds, base.now.q)
+    )
+    steps = np.repeat(STEPS, count)[:, None]
 
-    def left(dz: Array, drates: Array) -> Array:
-        now = form.at(time_s, z + dz, rates + drates, near)
-        return np.asarray((now.mass @ seconds[:, :, None])[:, :, 0] - now.force)
+    def slope(dz: Array, drates: Array) -> Array:
+        """Return the derivative along a change of the coefficients, or of their rates, at 0."""
+        now = form.at(times, at + steps * dz, turning + steps * drates, near)
+        left = (now.mass @ pulled[:, :, None])[:, :, 0] - now.force
+        far, far_back, half, half_back = left.reshape(len(STEPS), count, m)
+        return np.asarray((4.0 * (half - half_back) - 0.5 * (far - far_back)) / 3.0)
 
     speed = scale_m * float(np.abs(form.law.at(time_s)[1]).max())
-    base = form.at(time_s, z, rates, near)
     stiffness, damping = np.empty((count, m, m)), np.empty((count, m, m))
     for k, one in enumerate(np.eye(m)):
-        stiffness[:, :, k] = _slope(partial(left, drates=nothing), scale_m * one) / scale_m
-        damping[:, :, k] = _slope(partial(left, nothing), speed * one) / speed
+        stiffness[:, :, k] = slope(scale_m * one, nothing) / scale_m
+        damping[:, :, k] = slope(nothing, speed * one) / speed
     force = base.force - (base.mass @ seconds[:, :, None])[:, :, 0]
     return LinearForm(time_s, base.mass, damping, stiffness, force)
-
-
-def _slope(left: Callable[[Array], Array], by: Array) -> Array:
-    """Return the derivative along a change of the coefficients at 0, by central differences of two
-    steps."""
-    far, near = ((left(h * by) - left(-h * by)) / (2.0 * h) for h in (1.0, 0.5))
-    return np.asarray((4.0 * near - far) / 3.0)
 
 
 FEWEST, OTHERS, MOST = 65, 91, 1025
