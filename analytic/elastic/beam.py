@@ -167,10 +167,11 @@ class BeamBody:
         gradient[:, :, 0, 3:] = by * (c3 * spread.along_by - s3 * spread.across_by)
         gradient[:, :, 1, 3:] = by * (s3 * spread.along_by + c3 * spread.across_by)
         gradient[:, :, 2, self._bent] = free[:, None] * at.slope
-        along, across = self._drift(at, spread, rates)
         drift = np.zeros_like(place)
-        drift[:, :, 0] = free * (c * along - s * across)
-        drift[:, :, 1] = free * (s * along + c * across)
+        if rates.any():
+            along, across = self._drift(at, spread, rates)
+            drift[:, :, 0] = free * (c * along - s * across)
+            drift[:, :, 1] = free * (s * along + c * across)
         return Markers(place, gradient, drift)
 
     def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:

@@ -31,8 +31,11 @@ from models.scene.joints import block_name, sliding_angle
 from models.scene.laws import Law
 
 MOST_STEPS = 20
-CLOSED = 1e-13
-"""Step of Newton's method, over the longest link or in radians, after which none is taken."""
+CLOSED = 1e-9
+"""Step of Newton's method, over the longest link or in radians, after which none is taken: its
+square is below rounding."""
+STILL = 1e-13
+"""The same for an equilibrium, over the largest deflection: the derivatives are differences."""
 EARLY = 1e-3
 """Time between the deflections that the initial rates are taken from, over a turn."""
 SMALL = 1e-6
@@ -105,7 +108,7 @@ class ReducedForm:
     def near(self, time_s: Array) -> Array:
         """Return the coordinates of the rigid mechanism at times [s], (T, n)."""
         assembly = self.assembly
-        return coordinates(assembly, solve(assembly.scene, time_s))
+        return coordinates(assembly, solve(assembly.scene, time_s, bound=False))
 
     def at(self, time_s: Array, z: Array, rates: Array, near: Array) -> Instant:
         """Return the equations at times (T,), for coefficients and their rates (T, m), from rough
@@ -204,7 +207,7 @@ def quasi_static(form: ReducedForm, time_s: float) -> Array:
         step = np.linalg.solve((force[0] - force[1:]).T / (SMALL * unit), force[0])
         z, size = z + step, float(np.abs(step).max())
         largest = float(np.abs(z).max()) or 1.0
-        if size <= CLOSED * largest or (size < 1e-9 * largest and size >= 0.5 * last):
+        if size <= STILL * largest or (size < 1e-9 * largest and size >= 0.5 * last):
             return np.asarray(z)
         last = size
     raise CrankcheckError(

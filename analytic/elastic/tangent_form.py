@@ -25,8 +25,9 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 MOST_STEPS = 20
-CLOSED = 1e-14
-"""Step of Newton's method, in the units of coordinates, after which none is taken."""
+CLOSED = 1e-9
+"""Step of Newton's method, in the units of coordinates, after which none is taken: its square is
+below rounding."""
 INDEPENDENT = 1e-7
 """Singular value over the largest, from which on rows count as independent of each other."""
 NUDGE = 1e-7
