@@ -15,7 +15,7 @@ import numpy as np
 from analytic.change_points.turns import Counter
 from analytic.dyads.chunk import Chunk, driver_scale
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
-from analytic.prepared import Driven, Range, prepared, ranges, spans
+from analytic.prepared import Driven, Range, prepared, spans
 from analytic.result import Selection
 from analytic.structure.groups import Group, Triad
 from analytic.structure.mobility import Structure, analyse
@@ -140,9 +140,8 @@ def counted_angle(chunk: Chunk, link: str) -> Array:
 def reach(scene: Scene) -> list[Range]:
     """Return the driver angles [rad], within a turn, in which the scene can be assembled
     (`analytic.prepared`); for a driven slider, its displacements [m]."""
-    scale, ready = driver_scale(scene), prepared(scene)
-    found = ranges(ready.stretched, ready.looked_turns)
-    return [(low * scale, high * scale) for low, high in found]
+    scale = driver_scale(scene)
+    return [(low * scale, high * scale) for low, high in prepared(scene).reach]
 
 
 def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice], Driven]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -93,6 +93,11 @@ class Prepared:
             return MOST_ASSEMBLIES if self.followed else 1
         return round(self.period / math.tau)
 
+    @cached_property
+    def reach(self) -> list[Range]:
+        """Reachable driver angles [rad], as `ranges`."""
+        return ranges(self.stretched, self.looked_turns)
+
     @property
     def period(self) -> float:
         """Driver angle [rad] after which the positions repeat."""
@@ -150,8 +155,27 @@ class Prepared:
             fault = f"the loop cannot close at {step.key}, it is open by {open_m:.3g} m"
         return (
             f"{scene.name}: {scene.driver.joint} at {told(scene, theta[index])}: {fault}. "
-            f"{describe_reach(scene, self.stretched, self.looked_turns)}"
+            f"{self._reach_in_words}"
         )
+
+    @property
+    def _reach_in_words(self) -> str:
+        driver = self.scene.driver
+        if not self.reach:
+            grid = np.linspace(-math.pi, math.pi, SCAN + 1)
+            short = shortage(self.stretched, grid)
+            best = int(np.argmin(short))
+            where = "angle" if driver.slider is None else "place"
+            return (
+                f"It cannot be assembled at any {where} of {driver.joint}: it comes nearest at "
+                f"{told(self.scene, grid[best])}, open by {short[best]:.3g} m; change a length."
+            )
+        slides, scale = driver.slider is not None, driver_scale(self.scene)
+        unit, by = ("m", scale) if slides else ("deg", math.degrees(1.0))
+        spans = " and ".join(f"{a * by:.6g} to {b * by:.6g} {unit}" for a, b in self.reach)
+        more_than_one = any(high - low > math.tau for low, high in self.reach)
+        from_there = "" if slides or more_than_one else " (and whole turns from there)"
+        return f"{driver.joint} can stand at {spans}{from_there}."
 
 
 SCAN = 1440
@@ -198,7 +222,8 @@ def ranges(stretched: Stretched, turns: int = 1) -> list[Range]:
     edges = np.flatnonzero(closes[1:] != closes[:-1])
     if not len(edges):
         return []
-    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges])
+    short_at = partial(shortage, stretched)
+    borders = bisect(short_at, grid[edges], grid[edges + 1], closes[edges])
     opens = [float(a) for a, was in zip(borders, closes[edges], strict=True) if not was]
     ends = [float(a) for a, was in zip(borders, closes[edges], strict=True) if was]
     if closes[0]:  # the range that holds the angle pi: its end is a turn after the first
@@ -252,38 +277,23 @@ def _over_turns(stretched: Stretched, turns: int) -> list[Range] | None:
 def _parts(stretched: Stretched, grid: Array, closes: Mask) -> list[Range]:
     """Return the ranges between the first and the last angle of a grid."""
     edges = np.flatnonzero(closes[1:] != closes[:-1])
-    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges]).tolist()
+    short_at = partial(shortage, stretched)
+    borders = bisect(short_at, grid[edges], grid[edges + 1], closes[edges]).tolist()
     ends = [float(grid[0])] * bool(closes[0]) + borders + [float(grid[-1])] * bool(closes[-1])
     return list(zip(ends[::2], ends[1::2], strict=True))
 
 
-def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: Mask) -> Array:
+def bisect(
+    shortage_at: Callable[[Array], Array], low: Array, high: Array, closes_low: Mask
+) -> Array:
     """Return the angles at which closing begins or ends, each on the side that closes."""
     for _ in range(60):
         middle = 0.5 * (low + high)
-        same = (shortage(stretched, middle) <= 0.0) == closes_low
+        if np.all((middle == low) | (middle == high)):
+            break
+        same = (shortage_at(middle) <= 0.0) == closes_low
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     return np.where(closes_low, low, high)
-
-
-def describe_reach(scene: Scene, stretched: Stretched, turns: int = 1) -> str:
-    """Return the reachable range in words, for a message; ``turns`` as of `ranges`."""
-    reachable, driver = ranges(stretched, turns), scene.driver
-    if not reachable:
-        grid = np.linspace(-math.pi, math.pi, SCAN + 1)
-        short = shortage(stretched, grid)
-        best = int(np.argmin(short))
-        where = "angle" if driver.slider is None else "place"
-        return (
-            f"It cannot be assembled at any {where} of {driver.joint}: it comes nearest at "
-            f"{told(scene, grid[best])}, open by {short[best]:.3g} m; change a length."
-        )
-    slides, scale = driver.slider is not None, driver_scale(scene)
-    unit, by = ("m", scale) if slides else ("deg", math.degrees(1.0))
-    spans = " and ".join(f"{a * by:.6g} to {b * by:.6g} {unit}" for a, b in reachable)
-    more_than_one = any(high - low > math.tau for low, high in reachable)
-    from_there = "" if slides or more_than_one else " (and whole turns from there)"
-    return f"{driver.joint} can stand at {spans}{from_there}."
 
 
 def prepare(scene: Scene, structure: Structure) -> list[Step]:

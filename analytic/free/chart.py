@@ -40,13 +40,14 @@ class LimitedScene:
         """Return the arc that holds a driver angle. Raises CrankcheckError where the mechanism
         cannot be assembled there, or its way ends at infinity."""
         ready = prepared(scene)
-        spans = ranges(ready.stretched, ready.looked_turns)
-        span = _range_about(spans, driver_rad)
+        span = _range_about(ready.reach, driver_rad)
         if span is None:
             ready.chunk(np.array([driver_rad]), 0.0, 0.0, None)  # says where it is open
             raise CrankcheckError(f"{scene.name}: no range of its driver holds {driver_rad:g} rad")
         low, high = span
-        if spans == [(-math.pi, math.pi)] or (ready.looked_turns == 1 and high - low >= math.tau):
+        if ready.reach == [(-math.pi, math.pi)] or (
+            ready.looked_turns == 1 and high - low >= math.tau
+        ):
             return LimitedScene(scene, None)
         return LimitedScene(scene, (_limit(scene, span, -1), _limit(scene, span, 1)))
 

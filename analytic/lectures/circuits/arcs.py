@@ -10,13 +10,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS
 from analytic.dyads.steps import stretched
-from analytic.prepared import Prepared, prepared, shortage, with_valleys
+from analytic.prepared import Prepared, bisect, prepared, shortage, with_valleys
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import StructureError
@@ -154,18 +155,16 @@ def _closing(signed: SignedScene, arc: Arc) -> Iterator[Arc]:
     """Yield the parts of an arc over which the next dyad closes, for either sign of it."""
     signs = (*arc.signs, 1)
     key = signed.dyads[len(arc.signs)]
-    theta = with_valleys(lambda looks: signed.shortage(signs, looks), arc.angles(LOOKS + 1))
-    closes = signed.shortage(signs, theta) <= 0.0
+    shortage_at = partial(signed.shortage, signs)
+    theta = with_valleys(shortage_at, arc.angles(LOOKS + 1))
+    closes = shortage_at(theta) <= 0.0
     if closes.all():
         yield arc
         return
     edges = np.flatnonzero(closes[1:] != closes[:-1])
-    low, high, was = theta[edges], theta[edges + 1], closes[edges]
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        same = (signed.shortage(signs, middle) <= 0.0) == was
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    ends = [ArcEnd(float(at), key) for at in np.where(was, low, high)]
+    was = closes[edges]
+    borders = bisect(shortage_at, theta[edges], theta[edges + 1], was)
+    ends = [ArcEnd(float(at), key) for at in borders]
     opens = [end for end, closed in zip(ends, was, strict=True) if not closed]
     shuts = [end for end, closed in zip(ends, was, strict=True) if closed]
     if arc.low is None:  # round the turn: the part that holds its seam is one
