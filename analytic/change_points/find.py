@@ -32,6 +32,7 @@ from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Crossing
 from models.scene import Scene
+from models.scene.laws import ConstantSpeed
 
 SCAN = 360
 """Angles of the first scan of a turn: a touch is seen as a valley between its neighbours."""
@@ -190,6 +191,8 @@ def _start(scene: Scene) -> float:
     law, scale = scene.driver.law, driver_scale(scene)
     low, high = 0.0, law.period_s
     first = float(law.at(np.zeros(1))[0][0]) / scale
+    if isinstance(law, ConstantSpeed):
+        return first + math.copysign(AT_START, law.speed_rad_s)
     way, closer = 1.0, 0
     while closer < CLOSER and high < LONGEST_REST * law.period_s:
         time_s = np.linspace(low, high, SCAN + 1)
