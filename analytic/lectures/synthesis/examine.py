@@ -18,7 +18,7 @@ import numpy as np
 
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve_driven
-from analytic.lectures.circuits.arcs import Arc
+from analytic.lectures.circuits.arcs import Arc, Signs
 from analytic.lectures.circuits.circuits import SAME, Circuits, Defect, Position, circuits_of
 from analytic.lectures.synthesis.design import PrecisionPosition, Proposal, asked_motion
 from analytic.mechanism.fourbar import grashof_of
@@ -34,6 +34,8 @@ LOOKS = 361
 UNMET = 1e-6
 """Error of an unmet position, over the size or in rad: a hundred times the rounding of a position
 near a limit of a dyad, and far below any tolerance of a workshop."""
+ROUNDING = 1e-13
+"""Error of a position, as above, at which no other assembly is looked for."""
 MARGIN = math.radians(5.0)
 """Swing of a limited driver beyond the outermost positions, where possible."""
 KEEP = 0.5
@@ -116,7 +118,9 @@ def examine(proposal: Proposal) -> Examined:
     first position."""
     first, speed = proposal.positions[0].driver_rad, proposal.speed_rad_s
     circuits = circuits_of(proposal.draft.driven(_turning(proposal.driver, first, speed)).scene)
-    places = [_place_of(circuits, each) for each in proposal.positions]
+    places: list[Position] = []
+    for each in proposal.positions:
+        places.append(_place_of(circuits, each, places[-1].signs if places else None))
     _, arc = circuits.place(places[0])
     on_arc = [arc.signs == p.signs and arc.holds(p.driver_rad, SAME) for p in places]
     angles = _unwrapped(arc, [position.driver_rad for position in proposal.positions])
@@ -210,13 +214,17 @@ def _turning(link: str, start_rad: float, speed_rad_s: float) -> Table:
     return {"link": link, "speed_rad_s": speed_rad_s, "start_deg": math.degrees(start_rad)}
 
 
-def _place_of(circuits: Circuits, position: PrecisionPosition) -> Position:
-    """Return the assembly in which a position is met, among all at the driver's angle."""
+def _place_of(circuits: Circuits, position: PrecisionPosition, before: Signs | None) -> Position:
+    """Return the assembly in which a position is met, among all at the driver's angle; that of the
+    position ``before``, if it meets this one as well."""
     best, chosen = math.inf, circuits.signed.signs
-    for signs in itertools.product((1, -1), repeat=len(circuits.signed.dyads)):
+    every = itertools.product((1, -1), repeat=len(circuits.signed.dyads))
+    for signs in sorted(every, key=lambda each: each != before):
         off = _off(_at(circuits, Position(position.driver_rad, signs)), position)
         if off < best:
             best, chosen = off, signs
+        if signs == before and off <= ROUNDING:
+            break
     if best == math.inf:
         at = math.degrees(position.driver_rad)
         raise CrankcheckError(f"it can not be assembled with its driver at {at:.6g} deg")
