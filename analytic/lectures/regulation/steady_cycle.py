@@ -294,7 +294,7 @@ CLOSED = 1e-6
 constant torque makes it up."""
 ROUNDS = 6
 """Most searches for the places of the extremes."""
-ZOOMS, PARTS = 10, 16
+ZOOMS, PARTS = 7, 64
 """Divisions of an interval of nodes for them, and parts of each: to rounding, as a speed has a
 corner where a torque jumps."""
 STILL = 1e-11
