@@ -85,20 +85,23 @@ def least_cam(
         except (CrankcheckError, ValueError):
             return -math.inf
 
-    tried = [(float(start), margin(start)) for start in _starts(law, follower, above_m)]
-    kept = next((k for k, (_, off) in enumerate(tried) if off > 0.0), None)
-    if kept is None:
+    tried: list[tuple[float, float]] = []
+    for start in _starts(law, follower, above_m):
+        tried.append((float(start), margin(start)))
+        if tried[-1][1] > 0.0:
+            break
+    else:
         best = max(tried, key=lambda each: each[1], default=(0.0, -math.inf))
         nearest = f"; the nearest to it is {follower.base(best[0]):.6g} m" if best[0] else ""
         raise CrankcheckError(
             f"no base radius keeps the limit{nearest}: change the stroke, the spans or the follower"
         )
-    high = tried[kept][0]
-    if kept and math.isfinite(tried[kept - 1][1]):
+    high = tried[-1][0]
+    if len(tried) > 1 and math.isfinite(tried[-2][1]):
         # scipy is slow to import, and few need it
         from scipy.optimize import brentq  # type: ignore[import-untyped]  # ships no stubs
 
-        high = brentq(margin, tried[kept - 1][0], high, xtol=1e-15, rtol=1e-14)
+        high = brentq(margin, tried[-2][0], high, xtol=1e-15, rtol=1e-14)
     return Cam(law, float(follower.base(high)), follower, sense)
 
 
