@@ -78,7 +78,7 @@ def carried(move: Array, twist: Array) -> Array:
     """Return a twist whose axis is moved along with a body."""
     turn, place = move[:3, :3], move[:3, 3]
     omega = turn @ twist[:3]
-    return np.concatenate([omega, turn @ twist[3:] + np.cross(place, omega)])
+    return np.concatenate([omega, turn @ twist[3:] + cross_matrix(place) @ omega])
 
 
 def gap(move: Array) -> Array:
