@@ -5,8 +5,9 @@ besides, a delay explains the readings too, and the residual shows which it is.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -198,11 +199,19 @@ def _fit(excerpt: Excerpt, order: int) -> tuple[float, int, float] | None:
 def _left_forth_and_back(excerpt: Excerpt, order: int, cutoff: float) -> Array:
     """Return the readings (n,) less the reference after a filter with that cutoff over half the
     sampling rate, forth and back (Gustafsson, IEEE Trans. Signal Process. 44, 1996)."""
-    from scipy.signal import butter, filtfilt  # type: ignore[import-untyped]  # ships no stubs
+    from scipy.signal import filtfilt  # type: ignore[import-untyped]  # ships no stubs
+
+    there = filtfilt(*_coefficients(order, cutoff), excerpt.expected)
+    return np.asarray(excerpt.expected + excerpt.error - there)
+
+
+@lru_cache(maxsize=1024)
+def _coefficients(order: int, cutoff: float) -> tuple[Sequence[float], Sequence[float]]:
+    """Return the coefficients (b, a) of a filter; every channel starts from the same cutoffs."""
+    from scipy.signal import butter
 
     fade = math.exp(-math.pi * cutoff)
-    low_pass_ = butter(order, cutoff) if order else ([1.0 - fade], [1.0, -fade])
-    return np.asarray(excerpt.expected + excerpt.error - filtfilt(*low_pass_, excerpt.expected))
+    return butter(order, cutoff) if order else ([1.0 - fade], [1.0, -fade])
 
 
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
@@ -248,9 +257,7 @@ def _smoothing_account(inquiry: Inquiry, column: str, *, delayed: bool) -> Accou
 def _smooth(inquiry: Inquiry, excerpt: Excerpt, spread_s: float, by_s: float) -> Array:
     """Return the reference ``by_s`` later, averaged over a bell curve of that spread. Raises
     CrankcheckError where there is no mechanism."""
-    total = np.zeros(excerpt.rows.size)
-    for node, weight in zip(NODES, WEIGHTS / WEIGHTS.sum(), strict=True):
-        instants = excerpt.instants + (by_s + spread_s * node)
-        motion = inquiry.world.at(instants, [excerpt.channel])
-        total += weight * excerpt.channel.expected(motion)
-    return total
+    instants = excerpt.instants + (by_s + spread_s * NODES)[:, None]
+    motion = inquiry.world.at(instants.ravel(), [excerpt.channel])
+    expected = excerpt.channel.expected(motion).reshape(instants.shape)
+    return np.asarray(WEIGHTS @ expected / WEIGHTS.sum())
