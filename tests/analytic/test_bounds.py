@@ -80,7 +80,7 @@ def random_times(scene: Scene, count: int, turns: float, seed: int = 1) -> Array
     return np.sort(np.random.default_rng(seed).uniform(-0.1 * span, span, count))
 
 
-@pytest.mark.parametrize("count", [8, slowly(200, reason=TIMES)])
+@pytest.mark.parametrize("count", [4, slowly(200, reason=TIMES)])
 @pytest.mark.parametrize("name", few(shipped(), SIX, "scenes of the same dyads"))
 def test_error_stays_below_the_bound_in_every_scene(name: str, count: int) -> None:
     scene = load_scene(name)
@@ -89,7 +89,7 @@ def test_error_stays_below_the_bound_in_every_scene(name: str, count: int) -> No
     assert found.max() > 1e-3, "a bound a thousand times the largest error says little"
 
 
-@pytest.mark.parametrize("count", [4, slowly(100, reason=TIMES)])
+@pytest.mark.parametrize("count", [2, slowly(100, reason=TIMES)])
 @pytest.mark.parametrize("name", few(shipped(), SIX, "scenes of the same dyads"))
 def test_error_stays_below_the_bound_after_ten_thousand_turns_and_a_million_lengths_away(
     name: str, count: int
@@ -117,7 +117,7 @@ def test_error_stays_below_the_bound_after_ten_thousand_turns_and_a_million_leng
 def test_error_stays_below_the_bound_under_every_law(law: Law) -> None:
     scene = load_scene("sixbar-watt")
     scene = replace(scene, driver=Driver(scene.driver.link, law))
-    assert shares(scene, random_times(scene, 6, 2.0)).max() <= 1.0
+    assert shares(scene, random_times(scene, 3, 2.0)).max() <= 1.0
 
 
 @pytest.mark.parametrize("form", few(FORMS, OF_EACH_KIND, EACH_KIND))
@@ -127,7 +127,7 @@ def test_error_stays_below_the_bound_in_every_form_of_dyad(form: str, data: Data
     """Also where lengths are small differences of large local coordinates, rounded too."""
     scene = data.draw(mechanisms([form])).scene
     for each in (scene, with_far_frames(scene, (700.0, -3000.0))):
-        assert shares(each, random_times(each, 4, 1.0)).max() <= 1.0
+        assert shares(each, random_times(each, 2, 1.0)).max() <= 1.0
 
 
 def with_far_frames(scene: Scene, by: Point) -> Scene:

@@ -177,7 +177,7 @@ def test_error_stays_below_the_bound(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "samples"),
     [
-        *((name, 151) for name in ("usual", "kite")),
+        *((name, 61) for name in ("usual", "kite")),
         *(slowly(name, 601, reason="instants nearer to a change point") for name in LENGTHS),
     ],
 )

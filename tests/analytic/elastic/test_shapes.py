@@ -183,7 +183,7 @@ def test_a_body_that_flies_keeps_its_energy_and_gains_momentum_by_its_weight(nam
         matrix, right = own.weigh(state[None, :n], state[None, n:])
         return np.concatenate([state[n:], np.linalg.solve(matrix[0], right[0])])
 
-    until = 2e-4
+    until = 1e-4
     start = np.concatenate([q, rates])
     run = solve_ivp(slope, (0.0, until), start, method="DOP853", rtol=1e-11, atol=1e-13)
     q, rates = run.y[:n].T, run.y[n:].T

@@ -68,7 +68,7 @@ def test_pins_that_rub_move_the_limit_by_a_tangents_lean() -> None:
     scene, radii = steep(), {"B": 0.02, "C": 0.01}
     circles = [radius * math.sin(math.atan(0.3)) for radius in radii.values()]
     pins = {joint: CoulombFriction(joint, 0.3, radius) for joint, radius in radii.items()}
-    first = self_locking(replace(scene, friction={**scene.friction, **pins}), 72)[0]
+    first = self_locking(replace(scene, friction={**scene.friction, **pins}), 24)[0]
     before, after = (math.asin((circles[0] + sign * circles[1]) / 0.11) for sign in (1, -1))
     steepest = math.pi / 2 - math.atan(0.5)
     wanted = [math.asin(1.1 * math.sin(steepest - lean)) for lean in (before, after)]

@@ -2,6 +2,7 @@
 larger or faster; and of several freedoms, by all bodies."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 
@@ -59,7 +60,7 @@ def test_loads_with_kinks_are_integrated_from_kink_to_kink(name: str) -> None:
 
 
 def assert_balanced(free: FreeMotion) -> None:
-    energy = free.energy(np.linspace(0.0, free.until_s, 301))
+    energy = free.energy(np.linspace(0.0, free.until_s, 101))
     off = np.abs(energy.balance - energy.balance[0])
     assert off.max() <= 1e-11 * energy.kinetic.max()
 
@@ -120,7 +121,7 @@ def test_a_kink_may_come_with_the_end_and_be_foretold_beyond_the_reach() -> None
     # A stiff damper brakes by so much that the tangent of the start leaves the range.
     damper = PinSpring("damper", 0.0, 2e3, 0.0, "A", ("ground", "crank"))
     scene = past_limits(start_deg=60.0, speed_rad_s=100.0)
-    free = release(replace(scene, loads=torque(TABLE, "angle"), springs={"damper": damper}), 1.0)
+    free = release(replace(scene, loads=torque(TABLE, "angle"), springs={"damper": damper}), 0.3)
     assert 0.0 < math.degrees(free.range_rad) < 1.0
 
 
@@ -182,8 +183,7 @@ def unmoved(name: str, until_s: float) -> FreeMotion:
 @pytest.mark.parametrize(
     ("name", "change", "until_s"),
     [
-        *(("everything that acts", change, 0.2) for change in [*CHANGES][::2]),
-        ("limits", "mirrored", 0.45),
+        *(("everything that acts", change, 0.1) for change in [*CHANGES][::2]),
         *(
             slowly(name, change, 0.8, reason="roundings that grow with time")
             for name in SCENES
@@ -211,9 +211,11 @@ def test_the_moved_scene_has_the_moved_motion(name: str, change: str, until_s: f
         )
 
 
-@pytest.fixture(scope="module", params=[0.15, slowly(0.3, reason="errors that grow with time")])
-def pendulum(request: pytest.FixtureRequest) -> FreeMotion:
-    return release(parsed(DOUBLE_PENDULUM), request.param)
+@pytest.fixture(scope="module", params=[0.08, slowly(0.3, reason="errors that grow with time")])
+def pendulum(request: pytest.FixtureRequest) -> Iterator[FreeMotion]:
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("analytic.free.solved_motion.LOOKS", 101)  # bounds at 801 take a second
+        yield release(parsed(DOUBLE_PENDULUM), request.param)
 
 
 def test_several_freedoms_go_by_all_bodies_and_err_as_told(pendulum: FreeMotion) -> None:

@@ -215,7 +215,10 @@ LetGo = Callable[[Scene, float], FreeMotion | MultibodyMotion]
         (release, CUBE.format("rod", 0.1 * ROTOR_J)),
     ],
 )
-def test_one_that_runs_away_is_told_until_when(let_go: LetGo, load: str) -> None:
+def test_one_that_runs_away_is_told_until_when(
+    let_go: LetGo, load: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("analytic.multibody.steps.CROWD", 50)
     with pytest.raises(CrankcheckError, match=r"loads\.motor over omega drives it") as told:
         let_go(scene(ROTOR + load, 0.0), 2.0).at(np.array([2.0]))
     lost_s = re.search(r"runs away: at about (\S+) s", str(told.value))
@@ -226,19 +229,21 @@ def test_one_that_runs_away_is_told_until_when(let_go: LetGo, load: str) -> None
 def test_one_that_turns_ever_faster_is_refused_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a load that grows with the angle its turns never end, in less and less time."""
     monkeypatch.setattr("analytic.free.integration.MOST_WINDOWS", 1_000)
+    monkeypatch.setattr("analytic.free.integration.FIRST_WINDOWS", 150)
     steep = CUBE.replace('"omega"', '"angle"')
     with pytest.raises(CrankcheckError, match=r"loads\.motor over angle drives it"):
-        release(scene(SLIDER_CRANK + steep.format("crank", 0.1)), 2.0).at(np.array([2.0]))
+        release(scene(SLIDER_CRANK + steep.format("crank", 1.0)), 2.0).at(np.array([2.0]))
 
 
-def test_what_has_turned_back_does_not_run_away() -> None:
+def test_what_has_turned_back_does_not_run_away(monkeypatch: pytest.MonkeyPatch) -> None:
     """Many rows of a table, of next to nothing, in a tenth of a millisecond make many windows, and
     what turns back is slow for a while."""
+    monkeypatch.setattr("analytic.free.integration.FIRST_WINDOWS", 60)
     raised = ROTOR + "start_deg = 40.0\n"
-    looks = np.linspace(0.1, 2.0, 2000)
-    omega = release(scene(raised), 2.0).at(looks).links["rod"].omega
+    looks = np.linspace(0.1, 1.0, 1000)
+    omega = release(scene(raised), 1.0).at(looks).links["rod"].omega
     reversal_s = float(looks[np.argmax((omega > 0.0) != (omega[0] > 0.0))])
-    at_s = [0.0, *(reversal_s / 0.9 + 5e-5 * np.linspace(-1.0, 1.0, 400)).tolist(), 20.0]
-    rattle = Tabulated(tuple(at_s), (0.0, *(1e-6 * (np.arange(400) % 2)).tolist(), 0.0))
+    at_s = [0.0, *(reversal_s / 0.9 + 5e-5 * np.linspace(-1.0, 1.0, 100)).tolist(), 20.0]
+    rattle = Tabulated(tuple(at_s), (0.0, *(1e-6 * (np.arange(100) % 2)).tolist(), 0.0))
     loads = {"rattle": Load("rattle", "rod", None, rattle)}
-    release(replace(scene(raised), loads=loads), 2.0).at(np.array([2.0]))
+    release(replace(scene(raised), loads=loads), 1.0).at(np.array([1.0]))

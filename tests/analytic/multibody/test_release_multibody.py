@@ -28,7 +28,7 @@ from tests.analytic.multibody.scenes import (
     scene,
 )
 from tests.second_opinions.baumgarte_table import gap
-from tests.worlds.tiers import slow, slowly
+from tests.worlds.tiers import few, slow, slowly
 
 SPRINGS = """
 [springs]
@@ -62,7 +62,7 @@ def test_a_mechanism_of_micrometres_has_masses_too() -> None:
     assert here == pytest.approx(there, abs=1e-10)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", few(CASES, CASES.keys() - {"spun"}, "as with springs"))
 def test_it_goes_as_the_equation_of_the_machine_says_closed_and_with_its_energy(name: str) -> None:
     free, until_s = case(name)
     other = release(CASES[name], until_s)
@@ -86,9 +86,9 @@ def test_it_goes_as_the_equation_of_the_machine_says_closed_and_with_its_energy(
 
 @pytest.mark.parametrize("text", [DOUBLE_PENDULUM, FIVE_BAR], ids=["double pendulum", "five-bar"])
 def test_two_freedoms_converge_and_keep_their_energy(text: str) -> None:
-    time_s = np.linspace(0.0, 0.12, 11)
-    fine = release_multibody(scene(text), 0.12)
-    rough = release_multibody(scene(text), 0.12, Projection(1e-9))
+    time_s = np.linspace(0.0, 0.08, 11)
+    fine = release_multibody(scene(text), 0.08)
+    rough = release_multibody(scene(text), 0.08, Projection(1e-9))
     for link, motion in fine.at(time_s).links.items():
         assert motion.theta == pytest.approx(rough.at(time_s).links[link].theta, abs=1e-7)
     energy = fine.energy(time_s)
@@ -142,7 +142,7 @@ def test_a_load_on_one_stroke_jumps_where_the_slider_turns_or_holds_it() -> None
     free = by_bodies(scene(text), until_s)
     energy = free.energy(np.linspace(0.0, until_s, 11))
     assert np.ptp(energy.balance) < 1e-11 * energy.kinetic.max()
-    slider = free.at(np.linspace(0.0, until_s, 2001)).sliders["C"]
+    slider = free.at(np.linspace(0.0, until_s, 201)).sliders["C"]
     forward = np.maximum(np.diff(slider.displacement), 0.0).sum()
     assert energy.work[-1] == pytest.approx(-2.0 * forward, abs=1e-5)
     assert energy.work[-1] < -0.05
@@ -199,8 +199,8 @@ def test_a_chain_goes_through_its_flat_positions_and_is_smooth_within_a_passage(
 def test_a_parallelogram_goes_through_its_flat_positions() -> None:
     """In a few steps: those of one that is missed shrink to nothing."""
     own = fourbar(0.0838, 0.4833, 0.0838, 0.4833, start_deg=14.404, speed_rad_s=0.0, branch=1)
-    free, other, time_s = by_bodies(own, 0.45), release(own, 0.45), np.linspace(0.0, 0.45, 41)
-    assert len(free._history.passages) >= 3
+    free, other, time_s = by_bodies(own, 0.32), release(own, 0.32), np.linspace(0.0, 0.32, 41)
+    assert len(free._history.passages) >= 2
     assert free._history.steps < 150
     found, wanted = free.at(time_s), other.at(time_s, bound=False)
     for link, motion in found.links.items():
@@ -211,7 +211,7 @@ def test_a_parallelogram_goes_through_its_flat_positions() -> None:
 @pytest.mark.parametrize(
     ("beside", "start_deg", "until_s"),
     [
-        (1e-7, 150.0, 0.12),
+        (1e-7, 165.0, 0.05),
         slowly(-1e-9, 80.0, 0.3, reason="nearer, to the other side, and from farther off"),
     ],
 )
@@ -220,7 +220,8 @@ def test_beside_a_change_point_it_turns_off(
 ) -> None:
     """To what rounding leaves of its lengths; and its steps do not shrink to nothing either."""
     own = fourbar(0.15, 0.3, 0.15 * (1.0 + beside), 0.3, start_deg=start_deg, speed_rad_s=9.0)
-    free = by_bodies(own, until_s)
+    at_start = solve(own, np.zeros(1), bound=False).state()
+    free = release_multibody(own, until_s, Projection(1e-11), near=at_start)
     assert free._history.passages == ()
     assert free._history.steps < 250
     energy = free.energy(np.linspace(0.0, until_s, 11))

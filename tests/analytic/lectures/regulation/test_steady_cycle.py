@@ -35,6 +35,7 @@ from models.scene.laws import Accelerating, ConstantSpeed
 from models.scene.moved import mirrored
 from models.scene.tabulated import Tabulated
 from tests.analytic.lectures.regulation.worked import shaft, yoke
+from tests.worlds.tiers import slowly
 
 PULL = {"pull": (Sine(20.0, math.tau), "angle")}
 """40 J of surplus."""
@@ -160,7 +161,7 @@ def test_a_pushed_yoke_by_hand() -> None:
 
 
 def integrated(found: SteadyCycle) -> tuple[float, float]:
-    """The energy after a cycle over that at its start, less 1, and the time of it, by DOP853 over
+    """The energy after a cycle over that at its start, less 1, and the time of it, by RK45 over
     the angle."""
     machine, solution = found.machine, found.solution
 
@@ -172,7 +173,7 @@ def integrated(found: SteadyCycle) -> tuple[float, float]:
 
     done = solve_ivp(
         rates, (0.0, machine.cycle_rad), (solution.at_borders[0], 0.0),
-        method="DOP853", rtol=1e-6, atol=1e-11, max_step=0.5,
+        method="RK45", rtol=3e-8, atol=1e-11, max_step=0.5,
     )  # fmt: skip
     return float(done.y[0, -1] / solution.at_borders[0] - 1.0), float(done.y[1, -1])
 
@@ -352,11 +353,8 @@ def test_the_flywheel_of_a_yoke_without_loads_by_hand() -> None:
 
 
 def test_a_machine_with_its_flywheel_has_the_coefficient_let_go_or_driven() -> None:
-    """As a scene of its own, and tangents of the exact slopes say the same: no torque follows the
-    speed."""
+    """And tangents of the exact slopes say the same: no torque follows the speed."""
     found = wanted(load_scene("compressor"), 0.02)
-    again = cycle(with_flywheel(load_scene("compressor"), found.inertia_kg_m2))
-    assert again.delta == pytest.approx(0.02, rel=1e-11)
     (above, _), (_, below) = map(found.cycle.heights, found.slopes)
     steep, flat = found.slopes
     assert (above - below) / (steep - flat) == pytest.approx(found.inertia_kg_m2, rel=1e-11)
@@ -413,7 +411,10 @@ def test_a_pendulum_by_hand(rate: float) -> None:
         assert one.stiffness == pytest.approx(slope / 2.01, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", ["fourbar-swing", "fourbar-double-rocker-swing"])
+@pytest.mark.parametrize(
+    "name",
+    [slowly("fourbar-swing", reason="one without limits"), "fourbar-double-rocker-swing"],
+)
 def test_a_stable_one_is_swung_about_and_has_the_least_potential(name: str) -> None:
     """Half a small oscillation later it stands on the other side; the lowest is the lowest of a
     circuit, whose limits are passed."""

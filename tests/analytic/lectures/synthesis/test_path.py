@@ -18,7 +18,7 @@ from tests.worlds.tiers import at_length, slowly
 
 KINDS = list(itertools.product((True, False), (True, False)))
 NAMES = [f"{'timed' if t else 'free'}-{'closed' if c else 'open'}" for t, c in KINDS]
-FEW = 4
+FEW = 3
 
 
 def off_by_reference(fit: PathFit, task: PathTask) -> Array:
@@ -101,7 +101,7 @@ def test_cognates_are_among_them() -> None:
 
 def test_the_same_seed_gives_the_same_answer() -> None:
     task = random_path(3, 10, timed=True, closed=True, noise=0.02)
-    one, same, other = (generate(task, starts=2, seed=seed).fits for seed in (1, 1, 2))
+    one, same, other = (generate(task, starts=1, seed=seed).fits for seed in (1, 1, 2))
     assert [fit.four_bar for fit in one] == [fit.four_bar for fit in same]
     assert one[0].rms_m != other[0].rms_m
 
@@ -150,7 +150,7 @@ def test_a_distance_that_is_not_allowed_is_told_as_a_defect_and_the_steps_draw_a
 
 def test_few_points_leave_freedom_and_are_met_exactly() -> None:
     points = (0j, 0.1 + 0.05j, 0.22 + 0.06j, 0.3 + 0.02j, 0.34 - 0.06j)
-    best = generate(PathTask(points), starts=FEW).fits[0]
+    best = generate(PathTask(points), starts=2).fits[0]
     assert best.rms_m < 1e-8
     assert best.proposal.chosen["freedom"].startswith("4 numbers")
     timed = random_path(1, 5, timed=True, closed=False)
