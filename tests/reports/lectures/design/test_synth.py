@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner, Result
 
-from analytic.lectures.synthesis import coupler
+from analytic.lectures.synthesis import coupler, solutions
 from analytic.lectures.synthesis.solutions import solutions_of
 from models.files.reading import read_scene
 from models.lectures.tasks import find_task, load_task
@@ -14,6 +14,7 @@ from reports.cli import app
 from reports.lectures.design import synth as command
 from reports.lectures.design.design_tables import solution_frame
 from tests.worlds.command_line import flat, refused
+from tests.worlds.tiers import slowly
 
 
 def synth(*arguments: str) -> Result:
@@ -65,10 +66,14 @@ def test_solutions_and_proof_are_written_and_what_was_left_there_is_told(tmp_pat
 LEVER = 'mechanism = "slotted-lever"\ntime_ratio = {}\nstroke_m = {}\nrod_m = {}'
 
 
-def test_what_an_engine_misses_or_only_defects_answer_is_an_exit_code(tmp_path: Path) -> None:
+def test_what_an_engine_misses_or_only_defects_answer_is_an_exit_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     tight = written(tmp_path, "swing_deg = 60.0\nrocker_m = 0.2\ntolerance_deg = 1e-12")
     options = ("--prove", "--best", "1", "--engine", "mujoco")
     missed = synth("rocker", tight, *options)
+    # The nearest task, which test_tasks.py looks for, takes five seconds.
+    monkeypatch.setattr(solutions, "nearest", lambda task, solve: ("", []))
     ram = written(tmp_path, LEVER.format(8.0, 0.3, 0.1))  # it turns back before its lever does
     ram = synth("quick-return", ram, "--prove")
     for result, *words in (
@@ -120,7 +125,7 @@ def poses(*each: tuple[float, float, float]) -> str:
             "a search from 2 starts, no proof that there are no others",
         ),
         ("function", "power-4-points", "open starts are tried on a grid, no proof"),
-        ("coupler", "driving-dyad", "16 examined"),
+        slowly("coupler", "driving-dyad", "16 examined", reason="it goes on as of a function"),
     ],
 )
 def test_a_search_tells_how_far_it_is_and_what_it_does_not_prove(

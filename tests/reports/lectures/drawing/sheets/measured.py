@@ -17,6 +17,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.path import Path
 from matplotlib.text import Text
 from matplotlib.textpath import TextPath
 
@@ -80,13 +81,15 @@ def overlaps(figure: Figure) -> list[str]:
 
 
 def _word(text: Text, canvas: FigureCanvasAgg) -> Word:
-    """The box of type is higher than the letters in it: theirs are those of their outlines."""
+    """The box of type is higher than the letters in it: theirs are those of their outlines, whose
+    control points are in no corner of it that the curves do not reach."""
     renderer, font = canvas.get_renderer(), text.get_fontproperties()
     typed = text.get_window_extent(renderer)
     below = renderer.get_text_width_height_descent("lp", font, False)[2]
-    outline = TextPath((0.0, 0.0), text.get_text(), prop=font).get_extents()
+    outline = TextPath((0.0, 0.0), text.get_text(), prop=font)
+    places = outline.vertices[outline.codes != Path.CLOSEPOLY][:, ::-1]
     base = np.array([typed.y0 + below, typed.x0])
-    low, high = base + DPI / 72.0 * np.array([outline.min[::-1], outline.max[::-1]])
+    low, high = base + DPI / 72.0 * np.array([places.min(axis=0), places.max(axis=0)])
     return Word(text.get_text(), np.floor(low).astype(int), np.ceil(high).astype(int))
 
 
@@ -97,5 +100,5 @@ def _picture(canvas: FigureCanvasAgg, hidden: Sequence[Artist]) -> Array:
     canvas.draw()
     for artist in hidden:
         artist.set_visible(True)
-    colours = np.asarray(canvas.buffer_rgba())[::-1, :, :3] / 255.0
-    return np.asarray(colours.min(axis=2))
+    colours = np.asarray(canvas.buffer_rgba())[::-1]
+    return np.asarray(np.minimum.reduce([colours[..., k] for k in range(3)]) / 255.0)
