@@ -97,7 +97,7 @@ def disagreement(scene: Scene, closed: Motion, second: Motion) -> float:
 @pytest.mark.parametrize(
     ("name", "samples"),
     [
-        *((name, 3) for name in SIX),
+        *((name, 3) for name in SIX[2:]),  # the dyads of the first two are among theirs
         *(
             slowly(name, 73, reason="shapes of the same dyads, all over the turn")
             for name in shipped()
