@@ -201,7 +201,7 @@ class MultibodyMotion:
         # As many coordinates as freedoms, those that move most, keep their speeds.
         leads = qr(free / unit[:, 0], mode="r", pivoting=True)[1][: len(free)]
         for direction in free:
-            moved = self.dynamics.closed((q + NUDGE * direction)[None], rates[None])[0][0]
+            moved: Array = self.dynamics.closed((q + NUDGE * direction)[None], rates[None])[0][0]
             beside = outset.freedoms(moved)
             as_fast = np.linalg.lstsq(beside[:, leads].T, rates[leads], rcond=None)[0] @ beside
             for start in ((moved, as_fast), (q, rates + NUDGE * per_s * direction)):
