@@ -175,8 +175,8 @@ THERE = [
     (name, engine)
     for name, fault in FAULTS.items()
     if fault.kind == "motion" and name not in NO_FAULT_THERE
-    for engine in fault.engines
-    if engine in FULL
+    for engine in FULL
+    if fault.possible(engine)
 ]
 
 
