@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from importlib.util import find_spec
 from types import ModuleType
 from typing import Literal, cast
 
@@ -173,6 +174,9 @@ def offering(what: Capability) -> list[str]:
 
 def _loaded(name: str, part: str) -> object:
     own = declaration(name)
+    absent = EngineError(f"engine {name}: not installed; {install_command(name)}")
+    if part == "engine" and not all(map(find_spec, own.roots)):  # sooner than by its imports
+        raise absent
     try:
         module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)
     except Exception as error:
@@ -183,7 +187,7 @@ def _loaded(name: str, part: str) -> object:
         lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
         if (lacking or own.package).split(".")[0] not in own.roots:
             raise
-        raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
+        raise absent from None
     return getattr(module, part.upper())
 
 
