@@ -1,5 +1,6 @@
 """Runs of one batch: worlds that hold the motion of others, and differences from runs alone."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion, each_array
 from models.scene import Scene
-from sim.engine import Run
+from sim.engine import EPSILON, Precision, Run
 
 MOST_ALONE = 16
 """Most worlds of a batch that are also run alone."""
@@ -44,6 +45,13 @@ class Batch:
     why: str
     us_per_step: float
     us_alone: float
+
+
+def solver_bound(precision: Precision, steps_per_turn: float) -> float:
+    """Return the most that two runs differ whose solvers round otherwise, in rad or over the
+    longest link. The minimum of a cost is found to the root of its rounding, here of the motion in
+    a step, and by both."""
+    return 2.0 * math.sqrt(EPSILON[precision]) * math.tau / steps_per_turn
 
 
 def evenly(count: int) -> tuple[int, ...]:

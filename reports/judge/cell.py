@@ -18,7 +18,7 @@ from models.scene import Scene
 from models.scene.driver import place_in_words
 from reports.compare.compare import Truth, compare, not_asked_for
 from reports.compare.errors import Departure, largest
-from reports.compare.worlds import Batch, difference, evenly, holders
+from reports.compare.worlds import Batch, difference, evenly, holders, solver_bound
 from reports.judge.halving import Followed, followed
 from reports.judge.known import Judged, Names
 from reports.judge.rules import BATCHES, RULES, judge
@@ -222,7 +222,7 @@ def _in_batch(worlds: Sequence[_Runs], runner: CellRunner) -> Checked:
         difference=apart[at][0],
         at=at,
         exact=all(exact for _, exact in apart.values()),
-        bound=done[0].floor,
+        bound=solver_bound(done[0].precision, cell.steps_per_turn),
         why=adapter.batches.why if adapter.batches else "",
         us_per_step=_median_us(done),
         us_alone=_median_us(alone.values()),

@@ -190,9 +190,9 @@ class Batches:
     ``record`` takes sessions at their starts, steps, ``every`` and a number of threads; it returns
     the logs in the order of the sessions, as `Session.record`, each with its part of the wall time,
     without that of compiling. The sessions are of no use afterwards. It raises EngineError where
-    they do not fit into one batch. ``threads`` is the most that it takes. A world differs from the
-    same session alone by no more than the engine's ``floor``; ``why`` it does at all, "" if it is
-    the same to the bit.
+    they do not fit into one batch. ``threads`` is the most that it takes. ``why`` a world differs
+    from the same session alone, by rounding that its solver amplifies; "" if it is the same to the
+    bit.
     """
 
     record: Callable[[Sequence[Any], int, int, int], Sequence[Log]]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from models.files.reading import load_scene
-from reports.compare.worlds import MOST_ALONE, difference, evenly, holders
+from reports.compare.worlds import MOST_ALONE, difference, evenly, holders, solver_bound
 from sim.engine import Run
 from sim.run.worlds import run_worlds
 from tests.sim.run.test_worlds import starts
@@ -74,3 +74,10 @@ def test_many_worlds_are_tried_alone_from_the_first_to_the_last() -> None:
     assert len(set(chosen)) == MOST_ALONE
     assert (chosen[0], chosen[-1]) == (0, 255)
     assert set(np.diff(chosen)) == {17}
+
+
+def test_the_bound_of_solvers_shrinks_with_the_step_and_the_rounding() -> None:
+    coarse, fine = (solver_bound("single", steps) for steps in (90.0, 180.0))
+    assert coarse == 2.0 * fine
+    assert fine == pytest.approx(2.41e-5, rel=1e-3)
+    assert solver_bound("double", 180.0) == pytest.approx(1.04e-9, rel=1e-3)
