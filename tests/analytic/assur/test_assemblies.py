@@ -22,7 +22,7 @@ from analytic.assur.eliminant import (
 from models.errors import CrankcheckError
 from models.scene import Point
 from tests.analytic.assur.homotopy import real, solutions
-from tests.worlds.tiers import at_length, slowly
+from tests.worlds.tiers import at_length, slow, slowly
 
 Kinds = tuple[str, str, str]
 KINDS = ("RR", "PR", "RP", "PP")
@@ -125,6 +125,7 @@ def test_kinds_with_two_legs_that_hold_the_angle_have_none() -> None:
             assemblies(drawn(kinds, 1))
 
 
+@slow("a process; the command of tests/reports/cli/test_ending.py loads none either")
 def test_a_mechanism_of_class_ii_loads_no_python_flint() -> None:
     say = (
         "import sys, numpy; from analytic.kinematics import solve;"

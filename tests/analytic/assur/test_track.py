@@ -64,6 +64,7 @@ def test_error_stays_below_the_bound_in_every_kind_of_triad(
         assert np.median(found[0]) > 1e-4, "a bound of ten thousand errors says little"
 
 
+@slow("a second and a half; the hard case of a triad near its limit has bounds as well")
 def test_beside_a_limit_position_bounds_are_infinite_and_beyond_it_two_assemblies_gone() -> None:
     scene = as_drawn(("RR", "RR", "RR"), 0)
     low, high = (end.theta for end in step_of(scene).track({}).ends)
@@ -85,6 +86,7 @@ def test_beside_a_limit_position_bounds_are_infinite_and_beyond_it_two_assemblie
         assert counts[0] == counts[1] + 2
 
 
+@slow("a second; far frames are drawn for each kind of dyad in test_bounds.py")
 def test_error_stays_below_the_bound_a_million_lengths_away() -> None:
     scene = moved(as_drawn(("PR", "RP", "PP"), 1), (1e6, -7e5))
     assert shares(scene, np.array([0.0, 3e-3])).max() <= 1.0

@@ -24,7 +24,7 @@ from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets
 from tests.analytic.change_points.jets import Jet
 from tests.analytic.test_bounds import errors, over
-from tests.worlds.tiers import slow
+from tests.worlds.tiers import slow, slowly
 
 Lengths = tuple[float, float, float, float]
 OFF = 1e-30
@@ -165,12 +165,12 @@ def test_a_parallelogram_stays_one(lengths: tuple[float, float]) -> None:
     ("lengths", "branch", "angles"),
     [
         ((0.125, 0.375, 0.375, 0.125), 1, [0.0]),
-        ((0.125, 0.375, 0.375, 0.125), -1, [0.0]),
+        slowly((0.125, 0.375, 0.375, 0.125), -1, [0.0], reason="as the other branch"),
         ((0.375, 0.125, 0.375, 0.125), 1, [0.0, math.pi]),
-        ((0.375, 0.125, 0.375, 0.125), -1, [0.0, math.pi]),
+        slowly((0.375, 0.125, 0.375, 0.125), -1, [0.0, math.pi], reason="as the other branch"),
         ((0.125, 0.125, 0.375, 0.375), 1, [0.0, math.pi]),
         ((0.25, 0.5, 1.0, 0.75), 1, [0.0]),
-        ((0.5, 0.625, 1.5, 1.625), 1, [math.pi]),
+        slowly((0.5, 0.625, 1.5, 1.625), 1, [math.pi], reason="as flat at 0"),
     ],
 )
 def test_fourbars_that_fold_flat_follow_the_smooth_branch(

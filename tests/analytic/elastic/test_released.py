@@ -31,7 +31,7 @@ from sim.run.check import refuse_unknown_forces
 from tests.analytic.elastic.driven import apart, by_multipliers, following, largest, with_elastic
 from tests.analytic.multibody.scenes import FIVE_BAR, PARALLELOGRAM, SLIDER_CRANK, scene
 from tests.worlds.engines import FULL
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 PULSE = load_scene("fourbar-elastic-pulse")
 PULSE_TEXT = find_scene("fourbar-elastic-pulse").read_text(encoding="utf-8")
@@ -77,6 +77,7 @@ def test_energy_is_the_work_of_the_pulse_less_what_damping_takes() -> None:
         assert energy.work[-1] < -1e-6 * energy.kinetic.max()
 
 
+@slow("a limit of what two methods agree upon below")
 def test_a_stiff_link_moves_as_a_rigid_one() -> None:
     """With an error of the first order in 1/E."""
     time_s = np.linspace(0.0, 0.04, 6)
@@ -181,6 +182,7 @@ def with_gains(scene: Scene, kp: float, kd: float) -> Scene:
     return following(scene, Controlled(LAW.start_rad, LAW.speed_rad_s, kp, kd))
 
 
+@slow("without control both methods are compared below; the controller's torque as well")
 def test_under_control_multipliers_give_the_same_motion() -> None:
     until_s = 0.02 * TURN_S
     time_s = np.linspace(0.0, until_s, 11)
@@ -231,7 +233,13 @@ def test_nobody_takes_a_controlled_crank_for_one_that_is_told() -> None:
             refuse_unknown_forces(SCENE, engine(name), with_forces=False)
 
 
-@pytest.mark.parametrize("kp", [10.0, slowly(0.0, reason="one gain alone")])
+@pytest.mark.parametrize(
+    "kp",
+    [
+        slowly(10.0, reason="half a second: the torque itself is compared above"),
+        slowly(0.0, reason="one gain alone"),
+    ],
+)
 def test_a_controllers_torque_as_loads_does_the_same(kp: float) -> None:
     scene, until_s = with_gains(replace(SCENE, gravity_m_s2=(0.0, -9.81)), kp, 0.1), 0.02
     times = np.linspace(0.0, until_s, 50)

@@ -19,7 +19,7 @@ from tests.analytic.free.mechanisms import fourbar, past_limits, released
 from tests.analytic.multibody.scenes import by_bodies
 from tests.analytic.multibody.scenes import scene as parsed
 from tests.worlds.loading import loaded_mechanism
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 
 @pytest.mark.parametrize(
@@ -59,6 +59,7 @@ def test_past_limits_all_goes_on_in_the_right_assembly_in_any_order_of_times() -
     assert np.array_equal(next(bounds), next(bounds)[::-1])
 
 
+@slow("rare: two singular positions within a tenth of the range")
 def test_a_limit_with_another_singular_position_beside_it_is_passed() -> None:
     """Less than 0.1 of the range beyond a limit of the driver an earlier dyad is open as well."""
     scene = let_go(replace(loaded_mechanism(36)[0], loads={}), 0.2)

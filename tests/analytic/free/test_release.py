@@ -74,6 +74,7 @@ def test_energy_balances(scene: Scene) -> None:
     assert_balanced(released(scene, 0.4))
 
 
+@slow("rare: a spring that is led through the length of 0")
 def test_a_spring_whose_ends_meet_turns_over() -> None:
     """The slider comes through the other end of its spring twice a turn; the pull jumps there."""
     across = LineSpring("across", 40.0, 0.1, 0.05, ("E", "C"))

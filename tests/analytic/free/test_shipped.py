@@ -91,7 +91,7 @@ def test_a_method_by_steps_of_order_8_agrees(name: str, until_s: float) -> None:
 
 @pytest.mark.parametrize(
     ("name", "until_s"),
-    brief_and_long("engine-flywheel", "slider-crank-spring"),
+    brief_and_long("slider-crank-spring"),
 )
 def test_the_multibody_form_agrees_with_every_link(name: str, until_s: float) -> None:
     if name == "engine-flywheel":

@@ -104,7 +104,14 @@ def other(scene: Scene, name: str, by: float) -> Scene:
 ASIDE = "cam-roller, its line elsewhere"
 
 
-@pytest.mark.parametrize("name", [*shipped("gears"), *shipped("cams"), ASIDE])
+@pytest.mark.parametrize(
+    "name",
+    few(
+        [*shipped("gears"), *shipped("cams"), ASIDE],
+        ["planetary", "cam-flat", ASIDE],
+        "as one of gears, one of cams and one aside",
+    ),
+)
 def test_gears_keep_their_teeth_and_followers_their_law(name: str) -> None:
     """Profiles follow from the dimensions; differences of scenes that are read again."""
     scene, step = load_scene(name.partition(",")[0]), 1e-7

@@ -39,6 +39,7 @@ from tests.analytic.multibody.scenes import (
 )
 from tests.second_opinions.baumgarte_table import STABLE, baumgarte_table
 from tests.worlds.loading import loaded_mechanism, massless
+from tests.worlds.tiers import slow, slowly
 
 
 @pytest.mark.parametrize("name", [*shipped(), *shipped("forces")])
@@ -211,7 +212,7 @@ LetGo = Callable[[Scene, float], FreeMotion | MultibodyMotion]
 @pytest.mark.parametrize(
     ("let_go", "load"),
     [
-        (by_bodies, SQUARE.format("rod", ROTOR_J)),
+        slowly(by_bodies, SQUARE.format("rod", ROTOR_J), reason="two seconds: by all bodies"),
         (release, CUBE.format("rod", 0.1 * ROTOR_J)),
     ],
 )
@@ -226,6 +227,7 @@ def test_one_that_runs_away_is_told_until_when(
     assert "give a time of 0.18 s or less" in str(told.value)
 
 
+@slow("a second: another load that drives it away")
 def test_one_that_turns_ever_faster_is_refused_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a load that grows with the angle its turns never end, in less and less time."""
     monkeypatch.setattr("analytic.free.integration.MOST_WINDOWS", 1_000)

@@ -62,7 +62,9 @@ def test_a_mechanism_of_micrometres_has_masses_too() -> None:
     assert here == pytest.approx(there, abs=1e-10)
 
 
-@pytest.mark.parametrize("name", few(CASES, CASES.keys() - {"spun"}, "as with springs"))
+@pytest.mark.parametrize(
+    "name", few(CASES, CASES.keys() - {"spun", "springs"}, "0.5 s: more that acts")
+)
 def test_it_goes_as_the_equation_of_the_machine_says_closed_and_with_its_energy(name: str) -> None:
     free, until_s = case(name)
     other = release(CASES[name], until_s)
@@ -208,6 +210,7 @@ def test_a_parallelogram_goes_through_its_flat_positions() -> None:
         assert np.all(off <= 1e-10 * other.sensitivity(time_s)), link
 
 
+@slow("a second and a half: its steps shrink beside a change point")
 @pytest.mark.parametrize(
     ("beside", "start_deg", "until_s"),
     [

@@ -15,7 +15,7 @@ from reports.cli.application import broken_package
 from reports.output.console import forget_odd_sizes
 from tests.worlds.command import COMMAND, PYTHON, End, ends
 from tests.worlds.command_line import crank, flat, told
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slowly
 
 ROOT = Path(__file__).parents[3]
 SOLVE = "solve fourbar-lecture-1"
@@ -78,7 +78,13 @@ def test_a_closed_output_and_a_variable_that_breaks_a_package_are_told() -> None
 
 
 @POSIX
-@pytest.mark.parametrize("line", [f"{SOLVE} --turns 100; X | head -n 1", "--help; X | true"])
+@pytest.mark.parametrize(
+    "line",
+    [
+        slowly(f"{SOLVE} --turns 100; X | head -n 1", reason="a second: after the first line"),
+        "--help; X | true",
+    ],
+)
 def test_a_reader_that_leaves_is_no_verdict(line: str) -> None:
     code, _, complaint = shell(f"(crankcheck {line.replace('X', 'echo $? >&2)')}")
     assert (code, complaint) == (0, "141\n")
@@ -127,7 +133,9 @@ def test_a_fault_in_what_a_package_is_asked_for_is_one_of_ours() -> None:
     assert broken_package(raised.value) == ""
 
 
-HEAVY = ("mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "openpyxl", "scipy")
+HEAVY = (
+    "mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "openpyxl", "scipy", "flint",
+)  # fmt: skip
 COUNTED = """
 import cProfile, json, sys
 counter = cProfile.Profile()
@@ -183,4 +191,4 @@ def test_the_reference_is_solved_without_an_engine() -> None:
     code, _, loaded, output = start("solve", "fourbar-lecture-1", "--at-deg", "90", counted=False)
     assert code == 0
     assert "4.6761490" in output
-    assert not {"mujoco", "pymunk", "matplotlib", "scipy"} & set(loaded)
+    assert not {"mujoco", "pymunk", "matplotlib", "scipy", "flint"} & set(loaded)

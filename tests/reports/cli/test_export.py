@@ -28,6 +28,7 @@ from sim.registry import Availability
 from sim.run import run
 from tests.worlds.command_line import crank, refused, told
 from tests.worlds.loading import massless
+from tests.worlds.tiers import slowly
 
 
 def exported(name: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
@@ -44,7 +45,9 @@ def off_rad(data: mujoco.MjData, link: str, truth: Motion) -> float:
     return float(abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi))
 
 
-@pytest.mark.parametrize("name", ["fourbar-swing", "double-pendulum"])
+@pytest.mark.parametrize(
+    "name", ["fourbar-swing", slowly("double-pendulum", reason="a second: two freedoms")]
+)
 def test_a_model_that_is_let_go_moves_as_its_masses_say(name: str) -> None:
     model, data = exported(name)
     while data.time < 0.2:
@@ -141,6 +144,7 @@ def test_a_run_is_drawn_beside_the_reference_with_its_error_magnified(
 
     monkeypatch.setattr(Axes, "plot", plotted)
     monkeypatch.setattr(Figure, "legend", shown)
+    monkeypatch.setattr(gif.FigureCanvasAgg, "print_png", lambda *_, **__: None)
     view = "view fourbar-lecture-1 --engine pymunk -o"
     told(view, tmp_path / "a.png")
     words = r"pymunk [\d.]+ as-shipped, step 873 µs, error magnified (\d+) times"
@@ -161,7 +165,6 @@ def test_a_run_is_drawn_beside_the_reference_with_its_error_magnified(
     np.testing.assert_allclose(corners, exact + factor * (off - exact), atol=1e-7)
     size = np.ptp(np.vstack([exact, [[-0.1, -0.1], [0.3, 0.2]]]), axis=0).max()
     assert 0.02 < factor * np.linalg.norm(off - exact, axis=1).max() / size < 0.07
-    monkeypatch.setattr(gif.FigureCanvasAgg, "print_png", lambda *_, **__: None)
     told(view, tmp_path / "b.png", "--magnify", "7")
     assert labels[-1].endswith("error magnified 7 times")
 

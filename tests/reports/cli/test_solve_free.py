@@ -15,6 +15,7 @@ from analytic.kinematics import solve
 from models.files.reading import load_scene
 from tests.worlds.command_line import crank, flat, refused, told
 from tests.worlds.let_go import EVERYTHING
+from tests.worlds.tiers import slow
 from tests.worlds.without_pdf import without_pdf
 
 SWING = "solve fourbar-swing --duration 0.5"
@@ -54,6 +55,7 @@ def test_figures_and_a_page_are_written(tmp_path: Path) -> None:
     assert "Sensitivity" in text
 
 
+@slow("a second; pictures and films are drawn in test_export.py, pages of free motion above")
 def test_a_picture_is_told_of(tmp_path: Path) -> None:
     said = told("view fourbar-pulse -o", tmp_path / "pulse.png")
     assert "fourbar-pulse in free motion" in flat(said)

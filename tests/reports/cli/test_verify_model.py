@@ -18,6 +18,7 @@ from reports.requests.verify import VerifyRequest
 from reports.requests.verify_model import IN_FOLDER
 from tests.worlds.command_line import crank, flat, told
 from tests.worlds.own_models import SLIDER_CRANK
+from tests.worlds.tiers import slowly
 
 DRIVEN = "verify --mjcf engine.xml --drive motor --speed 10 --turns 1"
 ONCE = f"{DRIVEN} --no-convergence"
@@ -121,7 +122,9 @@ LATE = "</worldbody><include file='parts/late.xml'/>"
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        (SLIDER_CRANK.replace("<mujoco", LATIN, 1), "the file is not UTF-8"),
+        slowly(
+            SLIDER_CRANK.replace("<mujoco", LATIN, 1), "the file is not UTF-8", reason="as below"
+        ),
         (SLIDER_CRANK.replace("</worldbody>", LATE), "its includes override the file itself"),
     ],
 )

@@ -25,6 +25,7 @@ from tests.worlds.fuzzing import ACTING
 from tests.worlds.stranger import FOURBAR, LINKAGES, course
 from tests.worlds.stranger_guises import COLUMNS, GERMAN, GUISES, PER_TURN, SHORT, disguised
 from tests.worlds.stranger_log import DEG, Dress, even, logged, map_text, single, uneven
+from tests.worlds.tiers import slowly
 
 PLAIN = "fourbar-lecture-1"
 TURN = logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN), SHORT)
@@ -160,7 +161,14 @@ RED = "rocker \x1b[31m [deg] \u202e"
 
 
 @pytest.mark.parametrize(
-    "name", ["rocker_deg" * 10_000, RED, "=cmd|'/c'!A1 rocker", "\x1b[31m sad"]
+    "name",
+    [
+        "rocker_deg" * 1_000,
+        slowly("rocker_deg" * 10_000, reason="a second: a name ten times as long"),
+        RED,
+        "=cmd|'/c'!A1 rocker",
+        "\x1b[31m sad",
+    ],
 )
 def test_a_strange_name_does_no_harm(name: str, judge: Judge) -> None:
     text = Dress(quoted=True).text({**TURN, name: TURN["rocker_deg"]})

@@ -25,7 +25,7 @@ from reports.own_log import drives
 from reports.own_log.drives import moved
 from reports.own_log.judged import log_rows
 from reports.own_log.table import not_judged_lines
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 2.0, 601)
@@ -128,7 +128,7 @@ def time_s(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> A
     return np.linspace(0.0, 1.2, 601)[::every]
 
 
-@pytest.mark.parametrize("crank", [True, False])
+@pytest.mark.parametrize("crank", [True, slowly(False, reason="a second: without the crank below")])
 def test_a_drive_is_fitted_with_its_doubt(crank: bool, time_s: Array) -> None:
     other = solve(moved(SCENE, 10.07, 0.35), time_s)
     noise = 1e-5 * np.random.default_rng(1).normal(size=(2, len(time_s)))
@@ -363,6 +363,7 @@ def written(scene: Scene) -> pd.DataFrame:
     return motion_frame(with_forces(scene, solve(scene, time_s)))
 
 
+@slow("a second and a half: a triad; that of a dyad is planted in tests/reports/causes")
 def test_a_log_of_another_assembly_of_a_triad_is_told_by_its_number() -> None:
     scene = load_scene("triad-platform")
     other = replace(scene, branch={"plate": 2})

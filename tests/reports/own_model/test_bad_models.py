@@ -19,6 +19,7 @@ from reports.own_model.judged import run_lines
 from reports.workers.isolated import Limits
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted, rocker, tied
 from tests.worlds.own_models import line, read_text
+from tests.worlds.tiers import slow
 
 PLATES = """<mujoco>
   <option gravity="0 0 0"/>
@@ -231,6 +232,7 @@ def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
         read(ModelRequest(path, "A", 10.0), Limits(1e-4, 8.0))
 
 
+@slow("a process; readings that end so are above, rows with such a reason in sweeps")
 def test_a_line_that_hangs_is_a_row_with_its_reason(tmp_path: Path) -> None:
     """In a process of its own (0.4 s), which is ended."""
     account = replace(read_text(tmp_path, HEALTHY, converge=False), profiles=["as-written"])

@@ -33,6 +33,7 @@ from tests.reports.lectures.design.constructions.constructed import (
 )
 from tests.reports.page.conftest import Write
 from tests.reports.page.tab import Tab
+from tests.worlds.tiers import slowly
 
 COUPLER = "#motion-picture .overlays .link:nth-child(2)"
 PLACE, PICTURE, PLAY = "#construction-place", "#construction-picture", "#construction-play"
@@ -66,7 +67,9 @@ def test_a_page_moves_with_its_forces_or_tells_the_time(wide: Tab, written: Writ
     assert words == ["0.00 s", "0.250 s"]
 
 
-@pytest.mark.parametrize(("propped", "pictures"), [(False, 5), (True, 2)])
+@pytest.mark.parametrize(
+    ("propped", "pictures"), [(False, 5), slowly(True, 2, reason="a figure that is missing")]
+)
 def test_a_page_has_the_figures_that_there_are(propped: bool, pictures: int) -> None:
     scene = replace(parallelogram(1), gravity_m_s2=(0.0, -9.81))
     if propped:

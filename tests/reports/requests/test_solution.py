@@ -11,6 +11,7 @@ import crankcheck
 from analytic.free.free_motion import loosened
 from models.files.reading import load_scene, shipped
 from models.scene.hard import double_parallelogram
+from tests.worlds.tiers import slowly
 
 SCENE, FREE, ELASTIC = "fourbar-lecture-1", "fourbar-swing", "fourbar-elastic"
 
@@ -77,9 +78,16 @@ def test_of_free_motion_there_is_what_was_asked_for_from_the_start_on() -> None:
 
 @pytest.mark.parametrize(
     ("name", "until_s"),
-    [(FREE, 0.3), ("fourbar-double-rocker-swing", 0.5), ("double-pendulum", 0.3),
-     ("slider-crank-spring", 0.2), ("fourbar-elastic-pulse", 0.02)],
-)  # fmt: skip
+    [
+        (FREE, 0.3),
+        slowly("fourbar-double-rocker-swing", 0.5, reason="0.8 s: through limits"),
+        slowly("double-pendulum", 0.3, reason="two seconds: two freedoms, by all bodies"),
+        ("slider-crank-spring", 0.2),
+        slowly(
+            "fourbar-elastic-pulse", 0.02, reason="a second: elastic reactions are driven below"
+        ),
+    ],
+)
 def test_free_motion_has_reactions_and_no_driving_torque(name: str, until_s: float) -> None:
     """The ground holds all that moves: the sum of m (a - g), beside loads and springs."""
     more = {"modes": 1} if "elastic" in name else {}
@@ -147,7 +155,10 @@ def test_a_straight_start_rings() -> None:
 
 @pytest.mark.parametrize(
     ("name", "asked"),
-    [(ELASTIC, {"elements": 1, "shape": "straight"}), ("fourbar-elastic-pulse", {"modes": 1})],
+    [
+        (ELASTIC, {"elements": 1, "shape": "straight"}),
+        slowly("fourbar-elastic-pulse", {"modes": 1}, reason="0.6 s: in free motion"),
+    ],
 )
 def test_the_coarsest_description_is_no_own_witness(name: str, asked: dict[str, object]) -> None:
     (told,) = crankcheck.solve(name, [0.0, 0.02], **asked).certainty

@@ -26,7 +26,10 @@ DRIVEN = [
     for value in case.values
     if case.judge == "follow"
 ]
-HARDEST = {(name, CATALOGUE[name].values[-1]) for name, _ in DRIVEN}
+HARDEST = {(name, CATALOGUE[name].values[-1]) for name, _ in DRIVEN} - {
+    ("triad-excess", 1e-6), ("coupler-near-limit", 0.01)
+}  # fmt: skip
+"""Without two of half a second and more, which the triad near its limit is like."""
 
 
 @pytest.mark.parametrize("name", CATALOGUE)

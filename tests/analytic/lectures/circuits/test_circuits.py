@@ -23,7 +23,7 @@ from models.files.reading import load_scene
 from models.scene import Driver, Scene
 from models.scene.driver import Released
 from tests.analytic.four_bars import fourbar, random_bars, rocker_limits_rad
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 WHOLE = [(-math.pi, math.pi)]
 SWINGING = [
@@ -115,6 +115,7 @@ def test_what_is_out_of_reach_says_by_how_much_or_where_it_is_not(said: str) -> 
         solve(OUT[said], np.zeros(1))
 
 
+@slow("rare: an arc that is longer than a turn, and ends")
 def test_a_triad_that_goes_on_for_more_than_a_turn_and_ends_is_told_with_both_ends() -> None:
     scene = load_scene("triad-slider")
     plate = scene.links["plate"]

@@ -35,7 +35,7 @@ from models.scene.laws import Accelerating, ConstantSpeed
 from models.scene.moved import mirrored
 from models.scene.tabulated import Tabulated
 from tests.analytic.lectures.regulation.worked import shaft, yoke
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 PULL = {"pull": (Sine(20.0, math.tau), "angle")}
 """40 J of surplus."""
@@ -352,6 +352,7 @@ def test_the_flywheel_of_a_yoke_without_loads_by_hand() -> None:
     assert near.by_tangents == pytest.approx(tangents, rel=1e-6)
 
 
+@slow("a second; flywheels of shafts and a yoke are compared with those by hand")
 def test_a_machine_with_its_flywheel_has_the_coefficient_let_go_or_driven() -> None:
     """And tangents of the exact slopes say the same: no torque follows the speed."""
     found = wanted(load_scene("compressor"), 0.02)
@@ -376,6 +377,7 @@ def test_a_machine_with_its_flywheel_has_the_coefficient_let_go_or_driven() -> N
     assert freely.drive_n_m == pytest.approx(0.0, abs=1e-9)
 
 
+@slow("0.6 s: the cycle of a motor is compared with an integration, flywheels by hand")
 def test_with_a_motor_the_flywheel_is_that_of_its_own_cycle() -> None:
     scene = shaft({**PULL, "motor": MOTOR}, free=True)
     found = wanted(scene, 0.01)

@@ -26,19 +26,24 @@ from tests.analytic.lectures.synthesis.random_tasks import (
     passed,
     random_solutions,
 )
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 FIRST = {"three_positions": 2, "given_pivots": 3, "four_positions": 1, "five_positions": 3}
 """The first task with a solution without a defect, and if it can be one with: of others, all of
 which have a defect, the nearest task is looked for, which takes a second."""
+ELSEWHERE = {
+    "path": "test_path.py finds paths by the reference",
+    "crank_rocker": "0.7 s: its time ratio is measured below",
+    "stroke_and_ratio": "0.6 s: its time ratio is measured below",
+}
 
 
 @pytest.mark.parametrize(
     ("kind", "numbers"),
     [
         *(
-            slowly(kind, range(1), reason="test_path.py finds paths by the reference")
-            if kind == "path"
+            slowly(kind, range(1), reason=ELSEWHERE[kind])
+            if kind in ELSEWHERE
             else (kind, range(FIRST.get(kind, 0), FIRST.get(kind, 0) + 1))
             for kind in TASKS
         ),
@@ -129,13 +134,13 @@ LEVER = [(pin, math.degrees(cmath.phase(0.4 - pin))) for pin in CRANK[:3]]
         (placed(*TURNED[:2], moving_m=[[0.3, 0.1], [0.5, 0.1]]), "the body is a crank"),
         slowly(HALF, "the body is a crank", reason="of 72 with a defect"),
         (placed(*ROUNDED), "positions met to"),
-        (placed(*CIRCLE[:3], moving_m=PINS), "driven at"),
+        slowly(placed(*CIRCLE[:3], moving_m=PINS), "driven at", reason="three, as four"),
         (placed(*CIRCLE[:4]), "parallelogram"),
         (placed(*ON_A_LINE[:3], moving_m=PINS), "the body is a slider"),
         slowly(placed(*ON_A_LINE), "the body is a slider", reason="five positions, as three"),
         (placed(*RODS[:3], moving_m=[[CRANK[0].real, CRANK[0].imag], ROD_END]), "slider B"),
         slowly(placed(*RODS), "slider", reason="five positions, as three"),
-        (placed(*TRAMMEL, moving_m=TRAMMEL_PINS), "slider P"),
+        slowly(placed(*TRAMMEL, moving_m=TRAMMEL_PINS), "slider P", reason="half a second: as O4"),
         (placed(*LEVER, fixed_m=[[0.0, 0.0], [0.4, 0.0]]), "slider O4"),
     ],
 )
@@ -183,7 +188,7 @@ NEAREST: list[tuple[TaskTable, str, str]] = [
 
 @pytest.mark.parametrize(
     ("task", "reason", "gives_up"),
-    [case if case in NEAREST[2:8] else slowly(*case, reason="each search takes 1 to 3 s")
+    [case if case in NEAREST[5:8] else slowly(*case, reason="each search takes up to 3 s")
      for case in NEAREST],
 )  # fmt: skip
 def test_a_task_without_a_solution_has_the_nearest_one_that_has_some(
@@ -225,6 +230,7 @@ def offset_by(**given: float) -> Solutions:
     return solutions_of(StrokeTask(**HEAD, stroke_m=0.1, form="offset", **given))
 
 
+@slow("a second: digits near limits of tasks that are met above")
 def test_near_their_limits_ratios_and_offsets_keep_their_digits_and_beyond_are_refused() -> None:
     found = offset_by(time_ratio=2.995)
     assert found.sound == [one for one in found.examined if one.least_sine >= IN_LINE]

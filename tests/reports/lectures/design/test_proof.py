@@ -40,6 +40,7 @@ def test_shipped_tasks_are_met_by_the_reference_and_the_engines(kind: str, name:
     _hold(one, task, name)
 
 
+@slow("0.7 s: a search; its positions are proven as those of other tasks")
 def test_a_path_is_met_by_the_reference_and_the_engines() -> None:
     task = load_task("path", "oval").model_copy(update={"starts": 3})
     _hold(solutions_of(task).examined[0], task, "oval")

@@ -124,7 +124,12 @@ def poses(*each: tuple[float, float, float]) -> str:
             "starts = 2",
             "a search from 2 starts, no proof that there are no others",
         ),
-        ("function", "power-4-points", "open starts are tried on a grid, no proof"),
+        slowly(
+            "function",
+            "power-4-points",
+            "open starts are tried on a grid, no proof",
+            reason="a second: as of a path",
+        ),
         slowly("coupler", "driving-dyad", "16 examined", reason="it goes on as of a function"),
     ],
 )

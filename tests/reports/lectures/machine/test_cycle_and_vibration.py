@@ -17,6 +17,7 @@ from models.files.reading import find_scene, load_scene, read_text
 from models.scene.characteristics import Constant, Polynomial, Sine
 from tests.analytic.lectures.regulation.worked import shaft, yoke
 from tests.worlds.command_line import crank, refused
+from tests.worlds.tiers import slowly
 from tests.worlds.without_pdf import without_pdf
 
 
@@ -92,7 +93,7 @@ def test_files_hold_all_digits_and_what_is_written_is_shown_as_well() -> None:
     assert found["cycle"]["largest_at_deg"] == pytest.approx(180.0)
 
 
-@pytest.mark.parametrize("free", [False, True])
+@pytest.mark.parametrize("free", [slowly(False, reason="0.6 s: as in free motion"), True])
 def test_the_written_scene_has_the_flywheel(free: bool) -> None:
     loads = {"pull": (Sine(20.0, math.tau), "angle"), "brake": (Constant(-3.0), "time")}
     Path("braked.toml").write_text(scene_text(shaft(loads)), encoding="utf-8")
@@ -246,7 +247,8 @@ BEAM = "height_m = 0.003"
         (4.15, {"mass_kg = 0.18225": "mass_kg = 5.4675"},
          r"UNSTABLE: a turn multiplies deviations by 2\.58.*Use another speed"),
         (5.5, {BEAM: f"{BEAM}\ndamping_s = 1e-4"}, r"Stable: deviations fall to a tenth in \d"),
-        (500.0, {BEAM: f"{BEAM}\ndamping_s = 1e-2"}, r"Stable: deviations die out within a turn\."),
+        slowly(500.0, {BEAM: f"{BEAM}\ndamping_s = 1e-2"},
+               r"Stable: deviations die out within a turn\.", reason="as with less damping"),
         (5.05, {}, "NEAR A RESONANCE with coupler at order 5"),
     ],
 )  # fmt: skip

@@ -36,7 +36,7 @@ from reports.lectures.drawing.sheets.paper import (
 from tests.reports.lectures.design.constructions import constructed as made
 from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines, overlaps
 from tests.reports.page.hostile import embedded_in
-from tests.worlds.tiers import few
+from tests.worlds.tiers import few, slow
 
 A4, A5, UPRIGHT = Paper.of("A4"), Paper.of("A5"), Paper.of("210x297")
 EVERY = {
@@ -61,6 +61,7 @@ def measured(name: str, paper: Paper = A4) -> dict[str, list[Array]]:
     return drawn_lines(sheet_of(name, paper).saved("svg", "lines"))
 
 
+@slow("a second: lines are measured off a sheet below as well")
 def test_links_and_a_circle_measured_off_the_sheet_are_those_of_the_scene() -> None:
     examined = examine(made.rocker_by_angle())
     sheet, lines = laid_out(examined, A4), measured("rocker by its angle")

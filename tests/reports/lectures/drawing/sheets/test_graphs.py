@@ -24,6 +24,7 @@ from reports.lectures.drawing.sheets.graph_span import Over, over_period
 from reports.lectures.drawing.sheets.graph_words import table_cells, told_log
 from reports.lectures.drawing.sheets.paper import Paper
 from tests.reports.lectures.drawing.sheets.measured import drawn_lines
+from tests.worlds.tiers import slowly
 
 LECTURE = load_scene("fourbar-lecture-1")
 PERIOD = LECTURE.driver.law.period_s
@@ -60,7 +61,7 @@ def slopes(by: Method, name: str) -> Array:
     [
         ("chords", "chord-phi", "ray-omega"),
         ("tangents", "tangent-omega", "ray-epsilon"),
-        ("integration", "step-omega", "ray-epsilon"),
+        slowly("integration", "step-omega", "ray-epsilon", reason="as of phi"),
         ("integration", "step-phi", "ray-omega"),
     ],
 )
