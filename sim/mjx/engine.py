@@ -63,13 +63,13 @@ class MjxSession(PortedSession):
         with self._as_numbers():
             for first in range(0, max(steps, 1), MOST):
                 count = min(steps - first, MOST)
-                given = [_filled(each[first : first + count + 1]) for each in (controls, led)]
+                given = [filled(each[first : first + count + 1]) for each in (controls, led)]
                 self._now, found = rolled(self._there, self._now, *given, self._crank, count)
                 rows.append(np.asarray(found, dtype=np.float64)[: count + (first + count == steps)])
         return np.concatenate(rows)
 
 
-def _filled(rows: Array) -> Array:
+def filled(rows: Array) -> Array:
     """Return the rows with others after them, to the size of the compiled loop."""
     return np.concatenate([rows, np.zeros((MOST + 1 - len(rows), rows.shape[1]))])
 

@@ -2,7 +2,7 @@
 
 import math
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -42,6 +42,8 @@ class NewtonSession(HeavyDriverSession):
     name = "newton"
     tangent = math.inf
     shift = -0.5
+    taped: ClassVar[bool] = False
+    """True if its steps are to be differentiated."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
@@ -75,7 +77,7 @@ class NewtonSession(HeavyDriverSession):
         builder = newton.ModelBuilder()
         register(builder, self.solver_name)
         builder.gravity = wp.vec3(*self.scene.gravity_m_s2, 0.0)
-        self.index = {GROUND: -1}
+        self.index, self.ends = {GROUND: -1}, list[tuple[Array, Array]]()
         for limb in self.tree.limbs:
             self.index[limb.body] = self._link(builder, limb.body)
         self.joint = [self._joint(builder, limb) for limb in self.tree.limbs]
@@ -83,12 +85,9 @@ class NewtonSession(HeavyDriverSession):
             builder.add_articulation(roots)
         for closure in self.tree.closures:
             first, last = sorted(closure.bodies, key=[*self.index].index)
-            ends = (self.bodies.anchor(name, closure.point) for name in (first, last))
-            here, there = (transform(place, 0.0) for place in ends)
-            builder.add_joint_ball(
-                self.index[first], self.index[last], parent_xform=here, child_xform=there
-            )
-        return builder.finalize(device="cpu")
+            ends = [row(self.bodies.anchor(name, closure.point), 0.0) for name in (first, last)]
+            builder.add_joint_ball(self.index[first], self.index[last], **self._ends(*ends))
+        return builder.finalize(device="cpu", requires_grad=self.taped)
 
     def _link(self, builder: Any, name: str) -> int:
         (mass, inertia), frame = pairs.mass_of(self.scene, name), self.frame_of(name)
@@ -100,7 +99,7 @@ class NewtonSession(HeavyDriverSession):
             refuse_massless(self.scene, self.name, name, turns=turns)
         return int(
             builder.add_link(
-                xform=transform(frame.origin, frame.theta),
+                xform=wp.transform(*row(frame.origin, frame.theta)),
                 mass=mass,
                 inertia=wp.mat33(np.diag([inertia or mass] * 3)),
                 lock_inertia=True,
@@ -121,12 +120,10 @@ class NewtonSession(HeavyDriverSession):
         anchor = next((each.anchor for each in limb.freedoms if each.kind == "hinge"), (0.0, 0.0))
         ahead = turned(anchor, limb.angle_rad)
         place = limb.offset[0] + ahead[0], limb.offset[1] + ahead[1]
-        ends = {
-            "parent_xform": transform(
-                self.bodies.from_centre(limb.parent, place), limb.angle_rad + axis
-            ),
-            "child_xform": transform(self.bodies.from_centre(limb.body, anchor), axis),
-        }
+        ends = self._ends(
+            row(self.bodies.from_centre(limb.parent, place), limb.angle_rad + axis),
+            row(self.bodies.from_centre(limb.body, anchor), axis),
+        )
         flywheel = 0.0
         if limb.body == self.led and not self.maximal:
             flywheel = float(self.settings["flywheel_ratio"]) * pairs.inertia_scale(self.scene)
@@ -143,6 +140,11 @@ class NewtonSession(HeavyDriverSession):
         return int(
             builder.add_joint_d6(*between, linear_axes=[along], angular_axes=[about], **ends)
         )
+
+    def _ends(self, parent: Array, child: Array) -> dict[str, Any]:
+        """Keep the frames of a joint in its bodies, and return them for the builder."""
+        self.ends.append((parent, child))
+        return {"parent_xform": wp.transform(*parent), "child_xform": wp.transform(*child)}
 
     def _articulations(self) -> list[list[int]]:
         """Return the joints of each tree on the ground, the limbs being depth first."""
@@ -179,18 +181,21 @@ class NewtonSession(HeavyDriverSession):
 
     def _lead(self, place: float, speed: float) -> None:
         """Put the led body where its driver's coordinate is ``place``."""
+        self.led_by = place, speed
+        number, frame = self.index[str(self.led)], self.led_at(place, speed)
+        self.now.body_q.numpy()[number] = row(frame.origin, frame.theta)
+        self.now.body_qd.numpy()[number] = twist(frame)
+        self.now.joint_q.numpy()[self.driven] = place - self.from_value
+        self.now.joint_qd.numpy()[self.driven] = speed
+
+    def led_at(self, place: float, speed: float) -> Frame:
+        """Return the frame of the led body where its driver's coordinate is ``place``."""
         ahead, slider = place - self.from_value, self.scene.driver.slider
         (x, y), theta = self.led_frame.origin, self.led_frame.theta
         if slider is None:
-            frame = Frame((x, y), theta + ahead, (0.0, 0.0), speed)
-        else:
-            u, v = turned((1.0, 0.0), self.scene.sliders[slider].direction_rad)
-            frame = Frame((x + ahead * u, y + ahead * v), theta, (speed * u, speed * v), 0.0)
-        row = self.index[str(self.led)]
-        self.now.body_q.numpy()[row] = tuple(transform(frame.origin, frame.theta))
-        self.now.body_qd.numpy()[row] = twist(frame)
-        self.now.joint_q.numpy()[self.driven] = ahead
-        self.now.joint_qd.numpy()[self.driven] = speed
+            return Frame((x, y), theta + ahead, (0.0, 0.0), speed)
+        u, v = turned((1.0, 0.0), self.scene.sliders[slider].direction_rad)
+        return Frame((x + ahead * u, y + ahead * v), theta, (speed * u, speed * v), 0.0)
 
     def lead(self, frame: Frame, push: Push) -> None:
         raise NotImplementedError
@@ -237,10 +242,10 @@ class NewtonSession(HeavyDriverSession):
         return self.facts_of(VERSION, matter, centre, (float(x), float(y)), held)
 
 
-def transform(place: Point, angle: float) -> Any:
-    """Return a transform in the plane."""
-    turn = wp.quat(0.0, 0.0, math.sin(0.5 * angle), math.cos(0.5 * angle))
-    return wp.transform(wp.vec3(*place, 0.0), turn)
+def row(place: Point, angle: float) -> Array:
+    """Return the numbers of a transform in the plane: place and quaternion."""
+    half = 0.5 * angle
+    return np.array([*place, 0.0, 0.0, 0.0, math.sin(half), math.cos(half)])
 
 
 def twist(frame: Frame) -> tuple[float, ...]:

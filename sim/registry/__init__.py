@@ -30,7 +30,9 @@ ENGINES: Mapping[str, str] = {
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
 """Default engine where one is enough."""
-Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"]
+Capability = Literal[
+    "snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe", "gradient"
+]
 """Optional parts of an engine."""
 Formulation = Literal[
     "soft constraints", "constraint impulses", "constraint equations", "by solver", "own"

@@ -114,6 +114,19 @@ class SensitivityRequest:
     ] = ()
     tolerance_mm: Annotated[float, option("Tolerance of lengths.", "MM")] = 0.1
     tolerance_deg: Annotated[float, option("Tolerance of angles.", "DEG")] = 0.1
+    engines: Annotated[
+        Sequence[str], option("Compare an engine's derivatives; repeatable, or all.", "--engine")
+    ] = ()
+    profiles: Annotated[
+        Sequence[str], option("Profile of the engines; repeatable (default tuned).", "--profile")
+    ] = ()
+    steps: Annotated[str, option("Steps after which engines are compared.", "K,K")] = "1,10,100"
+    steps_per_turn: Annotated[float, option("Steps of engines in a turn.", min=24, max=1e6)] = 720.0
+    start_deg: Annotated[
+        float | None, option("Angle of the driver at the start of engines.", "DEG")
+    ] = None
+    order: Annotated[bool, "With engines, halve the step as well: the order of the error."] = False
+    runs: Annotated[bool, "With engines, difference whole runs beside their own method."] = False
     json: Annotated[bool, "As JSON, not as a table."] = False
     output: Annotated[
         Path | None,
@@ -121,11 +134,19 @@ class SensitivityRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or draw effects. Raises CrankcheckError for a faulty request."""
+        """Show or draw effects, or engines' derivatives; return 1 where one of these is out of
+        tolerance, else 0. Raises CrankcheckError for a faulty request."""
         for name, value in (("mm", self.tolerance_mm), ("deg", self.tolerance_deg)):
             if not 0.0 < value < math.inf:
                 raise CrankcheckError(f"--tolerance-{name}: found {value:g}; give one above 0")
-        check_file(self.output, "-o", (*PICTURES, *ENDINGS), inputs=[find_scene(self.scene)])
+        kinds = (".html",) if self.engines else (*PICTURES, *ENDINGS)
+        check_file(self.output, "-o", kinds, inputs=[find_scene(self.scene)])
+        if self.engines:
+            from reports.lectures.machine.gradient_table import compare_engines  # with the engines
+
+            return compare_engines(self, console, progress)
+        if self.profiles or self.start_deg is not None or self.order or self.runs:
+            raise CrankcheckError("--profile, --start-deg, --order, --runs: name an --engine")
         tolerances = 1e-3 * self.tolerance_mm, math.radians(self.tolerance_deg)
         found = effects(load_scene(self.scene), self.of, self.by, *tolerances)
         if self.output is not None:
