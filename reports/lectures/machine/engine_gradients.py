@@ -305,16 +305,22 @@ def engine_gradients(
     for name, profile in choices:
         chosen = engine(name)
         settings = resolved(profile_of(chosen, profile), None)
-        own = "gradient" in declaration(name).offers
-        methods = [cast(Differentiated, capability(name, "gradient"))] if own else []
-        if not own or (with_runs and name != FIRST):  # whose own are differences too
-            methods.append(partial(_of_runs, chosen))
         blank = EngineGradient(question, chosen.name, chosen.version(), profile, "")
-        for method in methods:
+        for method in methods_of(name, with_runs=with_runs):
             try:
                 yield from _compared(blank, method, settings, with_order=with_order)
             except EngineError as error:
                 yield replace(blank, refusal=str(error))
+
+
+def methods_of(name: str, *, with_runs: bool = False) -> list[Differentiated]:
+    """Return an engine's own derivatives, or differences of its runs where it has none; with both
+    where those are wanted as well."""
+    own = "gradient" in declaration(name).offers
+    methods = [cast(Differentiated, capability(name, "gradient"))] if own else []
+    if not own or (with_runs and name != FIRST):  # whose own are differences too
+        methods.append(partial(_of_runs, engine(name)))
+    return methods
 
 
 def _compared(
