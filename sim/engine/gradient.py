@@ -81,8 +81,13 @@ def differences(opened: Opened, variation: Variation, steps: Sequence[int]) -> P
     least from one to the next."""
     by = {}
     for name in variation.names:
-        found = []
+        found: list[Array] = []
         for step in SWEEP:
+            if (
+                len(found) > 3
+                and (changes(found)[-2:].min(axis=0) > changes(found)[:-2].min(axis=0)).all()
+            ):
+                break  # rounding grows
             try:
                 near = [
                     places_after(opened, *one, steps) for one in variation.neighbours(name, step)
@@ -90,7 +95,8 @@ def differences(opened: Opened, variation: Variation, steps: Sequence[int]) -> P
             except CrankcheckError:  # too far to be assembled
                 continue
             found.append(slope(near, step))
-        by[name] = steadiest(found)
+        if len(found) > 1:
+            by[name] = steadiest(found)
     places = places_after(opened, variation.scene, variation.state, steps)
     return PoseGradient("differences of runs", places, by)
 
@@ -107,10 +113,13 @@ def places_after(opened: Opened, scene: Scene, state: State, steps: Sequence[int
 
 def steadiest(found: Sequence[Array]) -> Array:
     """Return, for each K of arrays (K, ...) by falling step, the one that differs least from the
-    next: errors of the step fall until those of rounding rise. Not a number where there is none."""
-    if len(found) < 2:
-        return np.full_like(found[0], np.nan) if found else np.array(np.nan)
-    every = np.array(found)
-    change = np.abs(np.diff(every, axis=0)).reshape(len(found) - 1, len(found[0]), -1).max(axis=2)
-    best = np.argmin(np.where(np.isnan(change), np.inf, change), axis=0)
-    return np.asarray(every[best, np.arange(len(found[0]))])
+    next: errors of the step fall until those of rounding rise."""
+    best = np.argmin(changes(found), axis=0)
+    return np.array([found[n][k] for k, n in enumerate(best)])
+
+
+def changes(found: Sequence[Array]) -> Array:
+    """Return the largest change of each K from one array to the next, (F - 1, K)."""
+    change = np.abs(np.diff(np.array(found), axis=0))
+    change = change.reshape(len(found) - 1, len(found[0]), -1).max(axis=2)
+    return np.where(np.isnan(change), np.inf, change)

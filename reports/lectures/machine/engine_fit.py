@@ -11,6 +11,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -140,7 +141,7 @@ class EngineMotions:
             return series + left.reshape(-1, *[1] * (series.ndim - 1)) * slope
 
         own = _together(made_up, own, slopes[lead])
-        return own, {n: _together(lambda a: a / units[n], slopes[n]) for n in by}
+        return own, {n: slopes[n].each_series(partial(np.multiply, 1.0 / units[n])) for n in by}
 
     def _found(self, asked: Question) -> PoseGradient:
         settings = resolved(profile_of(engine(self.engine), self.profile), None)
