@@ -68,6 +68,7 @@ FLOORS: Mapping[str, str] = {
         registry
         own_engine
         engine
+        compiling
     """,
 }
 """A file that stands in `analytic` itself is a room of its own; elsewhere there is none."""

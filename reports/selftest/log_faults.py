@@ -258,6 +258,12 @@ def _wrapped(theta: Array) -> Array:
     return np.asarray(np.remainder(theta + np.pi, 2 * np.pi) - np.pi)
 
 
+def _parted(scene: Scene, done: Run, size: float) -> Run:
+    """Open every pin more and more, up to a share of the longest link."""
+    wider = size * scene.longest_m * np.linspace(0.0, 1.0, len(moved(done).time_s))
+    return replace(done, gaps={name: gap + wider for name, gap in done.gaps.items()})
+
+
 _value = partial(Fault, "log")
 VALUES = (
     _value("sign-flipped", "an angle has the other sign", "CC103", _angle(_all_of(np.negative))),
@@ -283,6 +289,7 @@ VALUES = (
     _value("wrong-start", "a velocity is off at the start", "CC116", _omega(_at(START)), 5e-2, "w"),
     _value("wild-start", "a velocity of 1e6 rad/s at the start", "CC116",
            in_log(of_output("omega", lambda x, size: spoilt(x, START, 1e6 * size)))),
+    _value("loop-opens", "the pins come apart", "CC135", in_log(_parted), 0.1, "L"),
 )  # fmt: skip
 
 

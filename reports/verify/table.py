@@ -24,6 +24,7 @@ from reports.output.console import grid, hanging, show_failed
 from reports.output.formats import case_of, remark, suite_of
 from reports.output.numbers import count, readable
 from reports.output.palette import engine_styles
+from reports.plan.requirements import PROFILES
 from reports.protocol.way import WAYS
 from reports.quantities import QUANTITIES, named
 from sim.registry import declaration
@@ -221,8 +222,8 @@ FORCE_TABLE = CellTable(
 
 def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
     """Print the whole verification."""
-    failed = [one for one in checked if one.cell.gated and one.verdict not in ("within", "known")]
-    _failures(console, failed)
+    out = [one for one in checked if one.verdict not in ("within", "known")]
+    _failures(console, [one for one in out if one.cell.gated or one.cell.profile not in PROFILES])
     styles = engine_styles(one.cell.engine for one in checked)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
@@ -244,7 +245,7 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
 def _failures(console: Console, failed: Sequence[Checked]) -> None:
     """Print the failures by cell with the tried remedies, then the cures of the others by rule."""
     for one in failed:
-        head = f"{mark(one).plain}  {one.cell.label}"
+        head = f"{mark(one).plain}  {one.cell.label}" + " (not gated)" * (not one.cell.gated)
         show_failed(console, head, titled(one.failures), one.remedy)
     cures = {(f.rule, f.cure) for one in failed for f in one.failures if f.cure != one.remedy}
     for rule_id, cure in sorted(cures):
@@ -276,7 +277,8 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
         others = f" (and {count(len(members) - 1, 'more scene')})" if len(members) > 1 else ""
         head = f"{rule} {engine} {profile}, {one.cell.scene.name}{others}: "
         console.print(Text(f"{head}{finding.text}"))
-        console.print(Text(f"  {finding.cure}", "cyan"))
+        if finding.cure:
+            console.print(Text(f"  {finding.cure}", "cyan"))
     if groups:
         console.print()
 

@@ -16,6 +16,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
+from sim.compiling import listen
+
 Ending = tuple[str, object, bytes]
 """Ending of a job (``done``, ``crashed``), its result or reason, and its exception, pickled: a
 reader of the ending need not know it. An engine that compiles is no ending (``compiling``), with
@@ -42,10 +44,7 @@ def main(memory_bytes: int) -> None:
         from sim.own_engine.known import told  # most of a child's start, where its job needs less
 
         told(own_engines)
-    if "sim.engine" in sys.modules:
-        from sim.engine.compiling import listen
-
-        listen(lambda begins: send(answers, (COMPILING, begins, b"", False)))
+    listen(lambda begins: send(answers, (COMPILING, begins, b"", False)))
     at_first = _taken()
     _limit(at_first + memory_bytes)
     send(answers, ("ready", None, b"", False))

@@ -9,4 +9,5 @@ DECLARATION = Declaration(
     tried="3.17.",
     pip_name="mujoco-mjx",
     fewer=Fewer(),
+    needs=("jax",),
 )

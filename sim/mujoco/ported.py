@@ -16,9 +16,9 @@ from models.array import Array
 from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
+from sim.compiling import compiling
 from sim.engine import EPSILON, Drive, Facts, Poses, Profile, Setting, Settings
 from sim.engine import drive as drives
-from sim.engine.compiling import compiling
 from sim.mujoco.engine import MujocoSession
 from sim.mujoco.stepped import FULL, VERSION, Look
 

@@ -10,4 +10,5 @@ DECLARATION = Declaration(
     tried="4.0.",
     pip_name="mujoco-warp",
     fewer=Fewer(),
+    needs=("warp", "mujoco"),
 )

@@ -9,4 +9,5 @@ DECLARATION = Declaration(
     precision="single",
     tried="1.8.",
     fewer=Fewer(steps_per_turn=90.0),
+    needs=("warp",),
 )

@@ -14,9 +14,9 @@ from models.motion import State
 from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from models.scene.joints import Frame, turned
+from sim.compiling import compiling
 from sim.engine import Drive, Facts, Settings
 from sim.engine.acting import Push, Pushes
-from sim.engine.compiling import compiling
 from sim.engine.heavy_driver import HeavyDriverSession
 from sim.engine.settings import shipped_engine
 from sim.engine.ties import refuse_driver_angle, refuse_massless

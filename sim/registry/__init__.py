@@ -80,6 +80,12 @@ class Declaration:
     wheels: str = ""
     pip_name: str = ""
     fewer: Fewer | None = None
+    needs: tuple[str, ...] = ()
+
+    @property
+    def roots(self) -> set[str]:
+        """Top-level modules without which the engine is not installed."""
+        return {name.split(".")[0] for name in (self.package, *self.needs)}
 
     @property
     def distribution(self) -> str:
@@ -162,28 +168,30 @@ def offering(what: Capability) -> list[str]:
 
 
 def _loaded(name: str, part: str) -> object:
-    package = declaration(name).package
+    own = declaration(name)
     try:
         module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)
     except Exception as error:
-        _refuse_broken(name, package)
+        _refuse_broken(name, own)
         if not isinstance(error, ImportError | AttributeError):
             raise
         # A half-removed package leaves of an engine a module that lacks attributes.
         lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
-        if (lacking or package).split(".")[0] != package.split(".")[0]:
+        if (lacking or own.package).split(".")[0] not in own.roots:
             raise
         raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
     return getattr(module, part.upper())
 
 
-def _refuse_broken(name: str, package: str) -> None:
+def _refuse_broken(name: str, own: Declaration) -> None:
     """Import the package of an engine by itself: a failure there is no fault of crankcheck. Raises
     BrokenEngineError for an installed package that fails."""
+    package = own.package
     try:
         importlib.import_module(package)
     except Exception as error:
-        if isinstance(error, ModuleNotFoundError) and error.name == package:
+        absent = isinstance(error, ModuleNotFoundError) and f"{error.name}."
+        if absent and any(f"{name}.".startswith(absent) for name in (package, *own.needs)):
             return  # the importing code says what to do
         why = f"{type(error).__name__}: {str(error).partition(chr(10))[0][:300]}"
         named = [f"{key}={value}" for key, value in os.environ.items() if package.upper() in key]

@@ -6,7 +6,7 @@ import time
 from types import ModuleType
 
 from models.errors import CrankcheckError, SceneError
-from sim.engine.compiling import compiling
+from sim.compiling import compiling
 
 _held: list[bytearray] = []
 

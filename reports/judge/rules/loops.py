@@ -38,4 +38,4 @@ class LoopsHold:
             f"loop not enforced: {names} open by up to {worst:.2g} of the longest link, which "
             f"leaves {count(more, 'freedom')} more than the mechanism has"
         )
-        return Finding(self.id, "advice", text, worst, CLOSED)
+        return Finding(self.id, "fail", text, worst, CLOSED)
