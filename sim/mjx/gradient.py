@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
+from sim.compiling import compiling
 from sim.engine import Settings
-from sim.engine.compiling import compiling
 from sim.engine.gradient import PoseGradient, Variation, slope
 from sim.mjx.engine import MjxSession, filled, jax, jnp, mjx, rolled
 from sim.mujoco.gradient import Opened

@@ -12,8 +12,8 @@ import numpy as np
 from models.array import Array
 from models.errors import EngineError
 from models.scene.joints import mass_of
+from sim.compiling import compiling
 from sim.engine import Settings
-from sim.engine.compiling import compiling
 from sim.engine.gradient import OFFSETS, STEP, PoseGradient, Variation, placed, slope
 from sim.newton.engine import NewtonSession, row, twist
 from sim.newton.solvers import made, wp

@@ -64,10 +64,10 @@ class Declaration:
     ``extra`` is no part of a plain install of crankcheck, and runs only by name. The adapter is the
     value ``ENGINE`` of the file ``engine``; each capability in ``offers`` has a file of its name
     too, with a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`,
-    `Spoiler`, `Viewer`, `Reader` or `ForceRecipe`. An engine that runs ``apart`` may end its
-    process: it gets one of its own. ``tried`` starts every version that was compared with the
-    reference, ``wheels`` says for which systems there are any, where not for all. ``fewer`` is the
-    default verification of an engine whose steps take long.
+    `Spoiler`, `Viewer`, `Reader`, `ForceRecipe` or `Differentiated`. An engine that runs ``apart``
+    may end its process: it gets one of its own. ``tried`` starts every version that was compared
+    with the reference, ``wheels`` says for which systems there are any, where not for all.
+    ``fewer`` is the default verification of an engine whose steps take long.
     """
 
     package: str

@@ -138,7 +138,7 @@ class EngineMotions:
         units = asked.units
 
         def made_up(series: Array, slope: Array) -> Array:
-            return series + left.reshape(-1, *[1] * (series.ndim - 1)) * slope
+            return np.asarray(series + left.reshape(-1, *[1] * (series.ndim - 1)) * slope)
 
         own = _together(made_up, own, slopes[lead])
         return own, {n: slopes[n].each_series(partial(np.multiply, 1.0 / units[n])) for n in by}

@@ -209,10 +209,10 @@ class EngineGradient:
 
     def off(self, k: int, slopes: Array | None = None) -> Array:
         """Return the errors (P, N) after the k-th of the steps, over the largest derivative of the
-        reference; not a number for dimensions that the method leaves out."""
+        reference (over 1 where it has none); not a number where the method leaves one out."""
         assert self.slopes is not None
         truth, own = self.question.truth[k], self.slopes[k] if slopes is None else slopes
-        return np.asarray(np.abs(own - truth) / np.nanmax(np.abs(truth)))
+        return np.asarray(np.abs(own - truth) / (np.nanmax(np.abs(truth)) or 1.0))
 
     def error(self, k: int) -> float:
         off = self.off(k)
@@ -253,7 +253,8 @@ class EngineGradient:
     def findings(self, k: int) -> list[str]:
         """Return what the numbers say beside the error: derivatives of zero, pins that are open."""
         assert self.slopes is not None
-        largest = np.abs([self.slopes[k], self.question.truth[k]]).max(axis=2)
+        frames = [not one.local for one in self.question.outputs]  # no length on a body moves them
+        largest = np.abs([self.slopes[k], self.question.truth[k]])[..., frames].max(axis=2)
         size = np.nanmax(largest[1])
         zero = (largest[0] <= NOTHING * size) & (largest[1] > NOTABLE * size)
         found = [n for n, is_zero in zip(self.question.names, zero, strict=True) if is_zero]
