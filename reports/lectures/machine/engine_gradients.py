@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import cast
 
@@ -33,6 +33,8 @@ TOLERANCE = 1e-2
 of its way, times the condition of the fit: two digits a step."""
 NOTHING = 1e-9
 """Derivative that counts as zero, over the largest of the reference."""
+ASTRAY = 0.05
+"""Angle of a link against the reference [rad] with which a pose is another one."""
 NOTABLE = 1e-3
 """Derivative of the reference that is not small, over its largest."""
 
@@ -157,6 +159,16 @@ class Question:
         body = next(one.body for one in self.outputs if one.point == point)
         return [n for n, o in enumerate(self.outputs) if (o.point, o.body) == (point, body)]
 
+    def astray(self, found: PoseGradient) -> Array:
+        """Return the angle of the link that is farthest from the reference (K,) [rad]."""
+        motion = solve(self.scene, self.dt_s * np.array(self.steps, dtype=float), bound=False)
+        off = [
+            np.remainder(found.places[:, k, 2] - motion.links[name].theta + math.pi, math.tau)
+            for k, name in enumerate(bodies(self.scene))
+            if name in motion.links
+        ]
+        return np.asarray(np.abs(np.array(off) - math.pi).max(axis=0))
+
     @property
     def variation(self) -> Variation:
         return Variation(self.scene, _start(self.scene), self.names, self._shifted)
@@ -189,8 +201,10 @@ def _changed(scene: Scene, name: str, by: float) -> Scene:
 @dataclass(frozen=True)
 class EngineGradient:
     """Derivatives of an engine with a profile by one method, (K, P, N) as those of the reference,
-    and the opening of pins (K,) over the longest link; or the reason why there are none. ``finer``
-    are those with half the step, (P, N) after the last of the steps, where they were computed."""
+    the opening of pins (K,) over the longest link, and the largest error of a link's angle (K,)
+    [rad]; or the reason why there are none. ``finer`` are the derivatives with half the step,
+    (P, N) after the last of the steps, where they were computed.
+    """
 
     question: Question
     engine: str
@@ -199,7 +213,8 @@ class EngineGradient:
     method: str
     refusal: str = ""
     slopes: Array | None = None
-    gaps: Mapping[str, Array] | None = None
+    gaps: Mapping[str, Array] = field(default_factory=dict)
+    astray: Array | None = None
     finer: Array | None = None
     wall_s: float = 0.0
 
@@ -251,7 +266,8 @@ class EngineGradient:
         )
 
     def findings(self, k: int) -> list[str]:
-        """Return what the numbers say beside the error: derivatives of zero, pins that are open."""
+        """Return what the numbers say beside the error: derivatives of zero, open pins, and links
+        elsewhere, as on the other branch."""
         assert self.slopes is not None
         frames = [not one.local for one in self.question.outputs]  # no length on a body moves them
         largest = np.abs([self.slopes[k], self.question.truth[k]])[..., frames].max(axis=2)
@@ -259,10 +275,12 @@ class EngineGradient:
         zero = (largest[0] <= NOTHING * size) & (largest[1] > NOTABLE * size)
         found = [n for n, is_zero in zip(self.question.names, zero, strict=True) if is_zero]
         text = [f"zero by {', '.join(found)}"] * bool(found)
-        gaps = {pin: float(gap[k]) for pin, gap in (self.gaps or {}).items()}
+        gaps = {pin: float(gap[k]) for pin, gap in self.gaps.items()}
         pin = max(gaps, key=lambda name: gaps[name], default="")
         if pin and gaps[pin] > TOLERANCE:
             text.append(f"loop open: {gaps[pin]:.2g} of the longest link at {pin}")
+        elif self.astray is not None and self.astray[k] > ASTRAY:
+            text.append(f"links elsewhere, by up to {self.astray[k]:.2g} rad")
         return text
 
     def rows(self) -> Iterator[dict[str, object]]:
@@ -338,9 +356,14 @@ def _compared(
             half = replace(asked, dt_s=0.5 * asked.dt_s, steps=(2 * asked.steps[-1],))
             again = method(half.variation, settings, half.dt_s, half.steps)
             finer = half.of_engine(next(one for one in again if one.method == found.method))[0]
-        slopes, gaps = asked.of_engine(found), asked.gaps(found)
         yield replace(
-            blank, method=found.method, slopes=slopes, gaps=gaps, finer=finer, wall_s=wall
+            blank,
+            method=found.method,
+            slopes=asked.of_engine(found),
+            gaps=asked.gaps(found),
+            astray=asked.astray(found),
+            finer=finer,
+            wall_s=wall,
         )
         began = time.perf_counter()
 

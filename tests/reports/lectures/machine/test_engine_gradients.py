@@ -68,15 +68,17 @@ def test_no_place_depends_on_a_mass() -> None:
     assert np.abs(found.slopes[:, 1]).max() < 1e-6
 
 
-def told(slopes: Sequence[float], turn: float = 0.0, opening: float = 0.0) -> EngineGradient:
+def told(
+    slopes: Sequence[float], turn: float = 0.0, opening: float = 0.0, elsewhere: float = 0.0
+) -> EngineGradient:
     """A comparison of an engine with shares of the reference's derivatives, with the gradient of
-    the rocker turned in the plane of the first two, or with a pin open."""
+    the rocker turned in the plane of the first two, a pin open, or links elsewhere."""
     own = QUESTION.truth * np.array(slopes)[:, None]
     n = QUESTION.followed[0]
     c, s = math.cos(turn), math.sin(turn)
     own[..., n] = own[..., n] @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    gaps = {"C": np.array([0.0, opening])}
-    return EngineGradient(QUESTION, "fake", "1.0", "tuned", "tape", "", own, gaps)
+    gaps, astray = {"C": np.array([0.0, opening])}, np.array([0.0, elsewhere])
+    return EngineGradient(QUESTION, "fake", "1.0", "tuned", "tape", "", own, gaps, astray)
 
 
 def test_findings_come_from_the_numbers() -> None:
@@ -88,6 +90,7 @@ def test_findings_come_from_the_numbers() -> None:
     assert told((1.0, 1.0, 1.0), opening=0.25).findings(1) == [
         "loop open: 0.25 of the longest link at C"
     ]
+    assert told((1.0, 1.0, 1.0), elsewhere=0.5).findings(1) == ["links elsewhere, by up to 0.5 rad"]
     assert math.isnan(told((0.0, 0.0, 0.0)).angle(1))
     assert told((math.nan,) * 3).within is False
 
