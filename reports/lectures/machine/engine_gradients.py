@@ -98,6 +98,11 @@ class Question:
             raise CrankcheckError(f"{self.scene.name}: {held} has no derivative; leave it out")
         return np.stack([self._of_reference(name, found.by) for name in self.names], axis=1)
 
+    @property
+    def sizes(self) -> Array:
+        """Return the largest derivative of the reference (K,), 0 where none is certain."""
+        return np.asarray(np.nan_to_num(np.abs(self.truth)).max(axis=(1, 2)))
+
     def _of_reference(self, name: str, by: Mapping[str, Motion]) -> Array:
         if name not in by:
             return np.zeros((len(self.steps), len(self.outputs)))
@@ -132,6 +137,7 @@ class Question:
                 turn = np.exp(1j * found.places[:, row[one.body], 2])
                 place = own[:, 0] + 1j * own[:, 1] + turn * (1j * own[:, 2] * one.local + shift)
                 every[:, p, n] = (place.imag if one.axis else place.real) / self.scene.longest_m
+            every[:, p] = np.nan_to_num(every[:, p], nan=np.inf, posinf=np.inf, neginf=np.inf)
         return every
 
     def gaps(self, found: PoseGradient) -> dict[str, Array]:
@@ -227,16 +233,21 @@ class EngineGradient:
         reference (over 1 where it has none); not a number where the method leaves one out."""
         assert self.slopes is not None
         truth, own = self.question.truth[k], self.slopes[k] if slopes is None else slopes
-        return np.asarray(np.abs(own - truth) / (np.nanmax(np.abs(truth)) or 1.0))
+        return np.asarray(np.abs(own - truth) / (self.question.sizes[k] or 1.0))
 
     def error(self, k: int) -> float:
+        """Return the largest error, not a number where the reference is not certain."""
+        if np.isnan(self.question.truth[k]).all():
+            return math.nan
         off = self.off(k)
-        return float(np.nanmax(off)) if np.isfinite(off).any() else math.inf
+        return math.inf if np.isnan(off).all() else float(np.nanmax(off))
+
+    def is_within(self, k: int) -> bool:
+        return not self.error(k) > TOLERANCE
 
     @property
     def within(self) -> bool:
-        steps = range(len(self.question.steps))
-        return self.slopes is None or all(self.error(k) <= TOLERANCE for k in steps)
+        return self.slopes is None or all(map(self.is_within, range(len(self.question.steps))))
 
     @property
     def order(self) -> float:
@@ -271,7 +282,7 @@ class EngineGradient:
         assert self.slopes is not None
         frames = [not one.local for one in self.question.outputs]  # no length on a body moves them
         largest = np.abs([self.slopes[k], self.question.truth[k]])[..., frames].max(axis=2)
-        size = np.nanmax(largest[1])
+        size = self.question.sizes[k]
         zero = (largest[0] <= NOTHING * size) & (largest[1] > NOTABLE * size)
         found = [n for n, is_zero in zip(self.question.names, zero, strict=True) if is_zero]
         text = [f"zero by {', '.join(found)}"] * bool(found)
@@ -302,7 +313,7 @@ class EngineGradient:
                 "angle_rad": self.angle(k),
                 "order": self.order if k + 1 == len(self.question.steps) else math.nan,
                 "findings": self.findings(k),
-                "within": self.error(k) <= TOLERANCE,
+                "within": self.is_within(k),
             }
 
 

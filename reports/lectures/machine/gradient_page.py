@@ -67,7 +67,7 @@ def _engine(question: Question, one: EngineGradient) -> dict[str, object]:
                 "arrow": _arrow(one, k),
                 "angle": angle_text(one.angle(k)),
                 "error": short(one.error(k)),
-                "within": one.error(k) <= TOLERANCE,
+                "within": one.is_within(k),
                 "findings": [sentence_text(text) for text in one.findings(k)],
             }
             for k, number in enumerate(question.steps)
@@ -84,8 +84,9 @@ def _bars(
     assert one.slopes is not None
     columns = question.followed
     truth, own = question.truth[k][:, columns], one.slopes[k][:, columns]
-    column = int(np.argmax(np.nanmax(np.abs(truth), axis=0)))
-    largest = float(np.nanmax(np.abs(truth[:, column])))
+    sizes = np.nan_to_num(np.abs(truth)).max(axis=0)
+    column = int(np.argmax(sizes))
+    largest = float(sizes[column]) or 1.0
     for p, name in enumerate(question.names):
         ends = [float(np.clip(each[p, column] / largest, -1.3, 1.3)) for each in (truth, own)]
         yield name_text(name), ROW * (p + 0.5) + 4.0, BAR * ends[0], BAR * ends[1]

@@ -145,7 +145,7 @@ def show(console: Console, question: Question, found: Sequence[EngineGradient]) 
             cells.append([*line, "; ".join(mark for mark in marks if mark)])
     console.print(grid(heads, cells, whole=("engine", "profile", "method"), wraps=True))
     say(console, "")
-    sizes = (readable(float(np.nanmax(np.abs(truth)))) for truth in question.truth)
+    sizes = map(readable, question.sizes.tolist())
     say(
         console,
         f"Error: over the largest derivative of the reference, {', '.join(sizes)} after these "
