@@ -5,78 +5,39 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
 
 from analytic.gradients.dimensions import dimensions
 from models.errors import CrankcheckError, nearest, shown
-from models.files.reading import load_scene
 from models.scene import Scene
 from reports.lectures.machine.effects import followed
 from reports.lectures.machine.engine_gradients import (
     TOLERANCE,
     EngineGradient,
     Question,
-    engine_gradients,
 )
 from reports.output.console import grid, say
-from reports.output.formats import json_text
 from reports.output.numbers import readable, short
-from reports.output.write import write
 from reports.plan.requirements import chosen_engines
-from reports.workers.progress import progress_bar
 from sim.registry import engine
-
-if TYPE_CHECKING:
-    from reports.lectures.machine.sensitivity import SensitivityRequest
 
 MOST_STEPS = 100_000
 """Steps that are differentiated at most."""
 
 
-def compare_engines(request: SensitivityRequest, console: Console, progress: Console) -> int:
-    """Show and write the comparison; return 1 where a gradient is out of tolerance, else 0. Raises
-    CrankcheckError for a faulty request, and where no engine has derivatives."""
-    question = asked(request)
-    choices = chosen(request.engines, request.profiles)
-    found: list[EngineGradient] = []
-    with progress_bar(progress, "engines", len(choices)) as advance:
-        for choice in choices:
-            every = {"with_order": request.order, "with_runs": request.runs}
-            found += engine_gradients(question, [choice], **every)
-            advance()
-    if request.output is not None:
-        from reports.lectures.machine.gradient_page import gradient_page
-
-        write(request.output, gradient_page(question, found))
-    if request.json:
-        console.file.write(json_text(document(question, found)))
-    else:
-        show(console, question, found)
-        if request.output is not None:
-            say(console, f"{request.output}: gradients of {question.scene.name}")
-    if all(one.slopes is None for one in found):
-        raise CrankcheckError(f"{question.scene.name}: none of the engines has derivatives")
-    return int(not all(one.within for one in found))
-
-
-def asked(request: SensitivityRequest) -> Question:
+def asked(
+    scene: Scene, of: str, by: Sequence[str], steps: str, per_turn: float, start_deg: float | None
+) -> Question:
     """Return the question of a request. Raises CrankcheckError."""
-    scene = load_scene(request.scene)
     if scene.is_free or scene.elastic:
         raise CrankcheckError(f"{scene.name}: engines are compared with a driver, all links rigid")
-    if request.start_deg is not None:
-        scene = started(scene, request.start_deg)
-    names = tuple(request.by or dimensions(scene))
-    return Question(
-        scene,
-        names,
-        numbers_of(request.steps),
-        scene.driver.law.period_s / request.steps_per_turn,
-        followed(scene, request.of),
-    )
+    if start_deg is not None:
+        scene = started(scene, start_deg)
+    dt_s = scene.driver.law.period_s / per_turn
+    names = tuple(by or dimensions(scene))
+    return Question(scene, names, numbers_of(steps), dt_s, followed(scene, of))
 
 
 def started(scene: Scene, angle_deg: float) -> Scene:

@@ -28,6 +28,7 @@ from reports.output.write import check_file, write
 from reports.requests.arguments import SceneLike, is_true, scene_of, told_at_the_call
 from reports.requests.options import SceneName, option, output_option
 from reports.requests.shown import Shown
+from reports.workers.progress import progress_bar
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -142,9 +143,7 @@ class SensitivityRequest:
         kinds = (".html",) if self.engines else (*PICTURES, *ENDINGS)
         check_file(self.output, "-o", kinds, inputs=[find_scene(self.scene)])
         if self.engines:
-            from reports.lectures.machine.gradient_table import compare_engines  # with the engines
-
-            return compare_engines(self, console, progress)
+            return self._compare(console, progress)
         if self.profiles or self.start_deg is not None or self.order or self.runs:
             raise CrankcheckError("--profile, --start-deg, --order, --runs: name an --engine")
         tolerances = 1e-3 * self.tolerance_mm, math.radians(self.tolerance_deg)
@@ -161,6 +160,32 @@ class SensitivityRequest:
         else:
             show_effects(console, found)
         return 0
+
+    def _compare(self, console: Console, progress: Console) -> int:
+        """Show and write derivatives of engines beside those of the reference."""
+        from reports.lectures.machine import gradient_table as table  # with the engines
+        from reports.lectures.machine.engine_gradients import EngineGradient, engine_gradients
+        from reports.lectures.machine.gradient_page import gradient_page
+
+        scene, manner = load_scene(self.scene), (self.steps, self.steps_per_turn, self.start_deg)
+        question = table.asked(scene, self.of, self.by, *manner)
+        choices, found = table.chosen(self.engines, self.profiles), list[EngineGradient]()
+        with progress_bar(progress, "engines", len(choices)) as advance:
+            for one in choices:
+                own = engine_gradients(question, [one], with_order=self.order, with_runs=self.runs)
+                found += own
+                advance()
+        if self.output is not None:
+            write(self.output, gradient_page(question, found))
+        if self.json:
+            console.file.write(json_text(table.document(question, found)))
+        else:
+            table.show(console, question, found)
+            if self.output is not None:
+                say(console, f"{self.output}: gradients of {scene.name}")
+        if all(one.slopes is None for one in found):
+            raise CrankcheckError(f"{scene.name}: none of the engines has derivatives")
+        return int(not all(one.within for one in found))
 
 
 def _write(found: Effects, path: Path) -> None:
