@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -25,14 +25,12 @@ from analytic.gradients.length_fit import (
 )
 from models.array import Array
 from models.errors import CrankcheckError, EngineError
-from models.motion import Motion, each_array
+from models.motion import Motion
 from models.scene import Scene
-from models.scene.joints import bodies
 from models.scene.laws import ConstantSpeed
 from reports.lectures.machine.engine_gradients import Question, methods_of
-from sim.engine import BodyPose, Poses
-from sim.engine.gradient import OFFSETS, STEP, PoseGradient, Variation, slope
-from sim.engine.measure import motion as measured
+from reports.lectures.machine.engine_motions import motions, together
+from sim.engine.gradient import PoseGradient
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
 
@@ -133,14 +131,14 @@ class EngineMotions:
         names = tuple(dict.fromkeys([*by, lead]))
         asked = Question(scene, names, tuple(steps.tolist()), step / speed, "")
         found = self._found(asked)
-        own, slopes = _motions(asked.variation, found)
+        own, slopes = motions(asked.variation, found)
         left = drive - (law.start_rad + step * steps)
         units = asked.units
 
         def made_up(series: Array, slope: Array) -> Array:
             return np.asarray(series + left.reshape(-1, *[1] * (series.ndim - 1)) * slope)
 
-        own = _together(made_up, own, slopes[lead])
+        own = together(made_up, own, slopes[lead])
         return own, {n: slopes[n].each_series(partial(np.multiply, 1.0 / units[n])) for n in by}
 
     def _found(self, asked: Question) -> PoseGradient:
@@ -152,32 +150,3 @@ class EngineMotions:
                     return found
                 reason = found.refusal or reason
         raise EngineError(f"no derivatives by lengths: {reason}")
-
-
-def _motions(variation: Variation, found: PoseGradient) -> tuple[Motion, dict[str, Motion]]:
-    """Return the motion of the places, and its derivatives by a unit of each dimension."""
-    slopes = {}
-    for name, by in found.by.items():
-        near = [
-            _motion(scene, found.places + offset * STEP * by)
-            for offset, (scene, _) in zip(OFFSETS, variation.neighbours(name), strict=True)
-        ]
-        slopes[name] = _together(lambda *values: slope(values), *near)
-    return _motion(variation.scene, found.places), slopes
-
-
-def _motion(scene: Scene, places: Array) -> Motion:
-    """Return the motion of places (T, B, 3) of all bodies, without rates."""
-    still = np.full(places.shape[:1], np.nan)
-    poses = {
-        name: BodyPose(places[:, k, :2], places[:, k, 2], *[still] * 4)
-        for k, name in enumerate(bodies(scene))
-    }
-    return measured(scene, Poses(still, poses), rates=False)
-
-
-def _together(change: Callable[..., Array], *motions: Motion) -> Motion:
-    """Return a motion of whose series each is made of those of several."""
-    kinds = ("links", "points", "sliders")
-    changed = {k: each_array(change, *(getattr(one, k) for one in motions)) for k in kinds}
-    return replace(motions[0], **changed)

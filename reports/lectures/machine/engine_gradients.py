@@ -1,7 +1,7 @@
 """Derivatives of engines after some steps, compared with those of the reference at the same time.
 
-Outputs are the angle of each link and the place of each point on each body, over the longest link;
-a unit of a dimension is the longest link, a radian, or the mass itself. So all numbers are pure.
+Outputs are the angles of links, and the coordinates of sliders and points over the longest link; a
+unit of a dimension is the longest link, a radian, or the mass itself. So all numbers are pure.
 """
 
 from __future__ import annotations
@@ -16,15 +16,16 @@ from typing import cast
 import numpy as np
 
 from analytic.gradients.dimensions import dimensions, with_dimensions
-from analytic.gradients.gradient import gradient, masses
+from analytic.gradients.gradient import Gradient, gradient, masses
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError, EngineError
-from models.motion import Motion, State
+from models.motion import Bound, Motion, State
 from models.scene import Scene
-from models.scene.joints import blocks, bodies
+from reports.lectures.machine.engine_motions import columns, motions, poses_at
 from sim.engine import Engine, Session, Settings
 from sim.engine.gradient import Differentiated, PoseGradient, Variation, differences
+from sim.engine.measure import gaps
 from sim.engine.settings import profile_of, resolved
 from sim.registry import FIRST, capability, declaration, engine
 
@@ -40,31 +41,6 @@ NOTABLE = 1e-3
 
 
 @dataclass(frozen=True)
-class Output:
-    """A number of a pose: the angle of a body, or a coordinate of a point on it over the longest
-    link. ``axis`` is 0 or 1 for x or y, 2 for the angle."""
-
-    body: str
-    axis: int
-    point: str = ""
-    local: complex = 0.0
-
-    @property
-    def name(self) -> str:
-        return f"{'xy'[self.axis]} of {self.point} on {self.body}" if self.point else self.body
-
-
-def outputs(scene: Scene) -> list[Output]:
-    """Return the outputs of a scene, body by body."""
-    own = blocks(scene)
-    found = [Output(name, 2) for name in scene.links]
-    for name in bodies(scene):
-        points = {own[name].point: (0.0, 0.0)} if name in own else scene.links[name].points
-        found += [Output(name, a, p, complex(*at)) for p, at in points.items() for a in (0, 1)]
-    return found
-
-
-@dataclass(frozen=True)
 class Question:
     """Gradients of a scene from its start on, after ``steps`` of ``dt_s`` [s]: by ``names``."""
 
@@ -73,10 +49,6 @@ class Question:
     steps: tuple[int, ...]
     dt_s: float
     of: str
-
-    @cached_property
-    def outputs(self) -> list[Output]:
-        return outputs(self.scene)
 
     @cached_property
     def units(self) -> dict[str, float]:
@@ -89,91 +61,63 @@ class Question:
         }
 
     @cached_property
-    def truth(self) -> Array:
-        """Derivatives of the reference (K, P, N), not a number where none is certain."""
+    def reference(self) -> Gradient:
         known = [name for name in self.names if name in self.units]
         found = gradient(self.scene, self.dt_s * np.array(self.steps, dtype=float), known)
         if found.locked:
             held = ", ".join(found.locked)
             raise CrankcheckError(f"{self.scene.name}: {held} has no derivative; leave it out")
-        return np.stack([self._of_reference(name, found.by) for name in self.names], axis=1)
+        return found
+
+    @cached_property
+    def truth(self) -> Array:
+        """Derivatives of the reference (K, P, N), not a number where none is certain."""
+        own = self.columns(self.reference.motion)
+        every = []
+        for name in self.names:
+            by = self.reference.by.get(name)
+            if by is None or by.bound is None:
+                every.append(np.zeros_like(own))
+                continue
+            certain = np.isfinite(self.columns(by.bound))
+            every.append(np.where(certain, self.units[name] * self.columns(by), np.nan))
+        return np.stack(every, axis=1)
+
+    def columns(self, motion: Motion | Bound) -> Array:
+        return columns(motion, self.reference.motion, self.scene.longest_m)
+
+    @cached_property
+    def outputs(self) -> list[str]:
+        """Name of each column."""
+        own = self.reference.motion
+        points = [f"{axis} of {point}" for point in own.points for axis in "xy"]
+        return [*own.links, *own.sliders, *points]
 
     @property
     def sizes(self) -> Array:
         """Return the largest derivative of the reference (K,), 0 where none is certain."""
         return np.asarray(np.nan_to_num(np.abs(self.truth)).max(axis=(1, 2)))
 
-    def _of_reference(self, name: str, by: Mapping[str, Motion]) -> Array:
-        if name not in by:
-            return np.zeros((len(self.steps), len(self.outputs)))
-        own, bound, unit = by[name], by[name].bound, self.units[name]
-        assert bound is not None
-        columns = []
-        for one in self.outputs:
-            if one.axis == 2:
-                value, doubt = own.links[one.body].theta, bound.links[one.body].theta
-                scale = unit
-            else:
-                value = own.points[one.point].position[:, one.axis]
-                doubt, scale = bound.points[one.point].position, unit / self.scene.longest_m
-            columns.append(np.where(np.isfinite(doubt), scale * value, np.nan))
-        return np.stack(columns, axis=1)
-
-    def of_engine(self, found: PoseGradient) -> Array:
+    def of_engine(self, by: Mapping[str, Motion]) -> Array:
         """Return the derivatives of an engine (K, P, N), not a number where the method has none."""
-        row = {name: k for k, name in enumerate(bodies(self.scene))}
-        known = dimensions(self.scene)
-        every = np.full((len(self.steps), len(self.names), len(self.outputs)), np.nan)
-        for p, name in enumerate(self.names):
-            if name not in found.by:
-                continue
-            shifts = known[name].shifts if name in known else {}
-            for n, one in enumerate(self.outputs):
-                own = found.by[name][:, row[one.body]]
-                if one.axis == 2:
-                    every[:, p, n] = own[:, 2]
-                    continue
-                shift = self.units.get(name, 1.0) * shifts.get(("point", one.body, one.point), 0.0)
-                turn = np.exp(1j * found.places[:, row[one.body], 2])
-                place = own[:, 0] + 1j * own[:, 1] + turn * (1j * own[:, 2] * one.local + shift)
-                every[:, p, n] = (place.imag if one.axis else place.real) / self.scene.longest_m
-            every[:, p] = np.nan_to_num(every[:, p], nan=np.inf, posinf=np.inf, neginf=np.inf)
-        return every
+        none = np.full((len(self.steps), len(self.outputs)), np.nan)
+        every = [self.columns(by[name]) if name in by else none for name in self.names]
+        given = [name in by for name in self.names]  # what is not a number there went wrong
+        found = np.stack(every, axis=1)
+        return np.where(np.array(given)[:, None] & ~np.isfinite(found), np.inf, found)
 
-    def gaps(self, found: PoseGradient) -> dict[str, Array]:
-        """Return the opening of each pin between two moving bodies (K,), over the longest link."""
-        row = {name: k for k, name in enumerate(bodies(self.scene))}
-        first: dict[str, Array] = {}
-        gaps: dict[str, Array] = {}
-        for one in self.outputs:
-            if not one.point or one.axis:
-                continue
-            at = found.places[:, row[one.body]]
-            place = at[:, 0] + 1j * at[:, 1] + np.exp(1j * at[:, 2]) * one.local
-            other = first.setdefault(one.point, place)
-            gap = np.abs(place - other) / self.scene.longest_m
-            gaps[one.point] = np.maximum(gaps.get(one.point, 0.0), gap)
-        return gaps
+    def astray(self, own: Motion) -> Array:
+        """Return the angle of the link that is farthest from the reference (K,) [rad]."""
+        true = self.reference.motion.links
+        off = np.array([one.theta - true[name].theta for name, one in own.links.items()])
+        return np.asarray(np.abs(np.remainder(off + math.pi, math.tau) - math.pi).max(axis=0))
 
-    @cached_property
+    @property
     def followed(self) -> list[int]:
         """Numbers of the outputs of the follower."""
-        of, sliders = self.of, self.scene.sliders
-        if of in self.scene.links:
-            return [n for n, one in enumerate(self.outputs) if one.body == of and one.axis == 2]
-        point = sliders[of].point if of in sliders else of
-        body = next(one.body for one in self.outputs if one.point == point)
-        return [n for n, o in enumerate(self.outputs) if (o.point, o.body) == (point, body)]
-
-    def astray(self, found: PoseGradient) -> Array:
-        """Return the angle of the link that is farthest from the reference (K,) [rad]."""
-        motion = solve(self.scene, self.dt_s * np.array(self.steps, dtype=float), bound=False)
-        off = [
-            np.remainder(found.places[:, k, 2] - motion.links[name].theta + math.pi, math.tau)
-            for k, name in enumerate(bodies(self.scene))
-            if name in motion.links
-        ]
-        return np.asarray(np.abs(np.array(off) - math.pi).max(axis=0))
+        own = (self.of, f"x of {self.of}", f"y of {self.of}")
+        first = [n for n, name in enumerate(self.outputs) if name == self.of]
+        return first or [n for n, name in enumerate(self.outputs) if name in own]
 
     @property
     def variation(self) -> Variation:
@@ -207,7 +151,7 @@ def _changed(scene: Scene, name: str, by: float) -> Scene:
 @dataclass(frozen=True)
 class EngineGradient:
     """Derivatives of an engine with a profile by one method, (K, P, N) as those of the reference,
-    the opening of pins (K,) over the longest link, and the largest error of a link's angle (K,)
+    the opening of joints (K,) [m], and the largest error of a link's angle (K,)
     [rad]; or the reason why there are none. ``finer`` are the derivatives with half the step,
     (P, N) after the last of the steps, where they were computed.
     """
@@ -280,16 +224,17 @@ class EngineGradient:
         """Return what the numbers say beside the error: derivatives of zero, open pins, and links
         elsewhere, as on the other branch."""
         assert self.slopes is not None
-        frames = [not one.local for one in self.question.outputs]  # no length on a body moves them
-        largest = np.abs([self.slopes[k], self.question.truth[k]])[..., frames].max(axis=2)
+        angles = len(self.question.scene.links)  # a point also moves on its body
+        largest = np.abs([self.slopes[k], self.question.truth[k]])[..., :angles].max(axis=2)
         size = self.question.sizes[k]
         zero = (largest[0] <= NOTHING * size) & (largest[1] > NOTABLE * size)
         found = [n for n, is_zero in zip(self.question.names, zero, strict=True) if is_zero]
         text = [f"zero by {', '.join(found)}"] * bool(found)
-        gaps = {pin: float(gap[k]) for pin, gap in self.gaps.items()}
-        pin = max(gaps, key=lambda name: gaps[name], default="")
-        if pin and gaps[pin] > TOLERANCE:
-            text.append(f"loop open: {gaps[pin]:.2g} of the longest link at {pin}")
+        size = self.question.scene.longest_m
+        shares = {pin: float(gap[k]) / size for pin, gap in self.gaps.items()}
+        pin = max(shares, key=lambda name: shares[name], default="")
+        if pin and shares[pin] > TOLERANCE:
+            text.append(f"loop open: {shares[pin]:.2g} of the longest link at {pin}")
         elif self.astray is not None and self.astray[k] > ASTRAY:
             text.append(f"links elsewhere, by up to {self.astray[k]:.2g} rad")
         return text
@@ -309,7 +254,7 @@ class EngineGradient:
                 "steps": number,
                 "error": self.error(k),
                 "dimension": self.question.names[int(p)],
-                "output": self.question.outputs[int(n)].name,
+                "output": self.question.outputs[int(n)],
                 "angle_rad": self.angle(k),
                 "order": self.order if k + 1 == len(self.question.steps) else math.nan,
                 "findings": self.findings(k),
@@ -366,13 +311,15 @@ def _compared(
         if with_order:
             half = replace(asked, dt_s=0.5 * asked.dt_s, steps=(2 * asked.steps[-1],))
             again = method(half.variation, settings, half.dt_s, half.steps)
-            finer = half.of_engine(next(one for one in again if one.method == found.method))[0]
+            same = next(one for one in again if one.method == found.method)
+            finer = half.of_engine(motions(half.variation, same)[1])[0]
+        motion, by = motions(asked.variation, found)
         yield replace(
             blank,
             method=found.method,
-            slopes=asked.of_engine(found),
-            gaps=asked.gaps(found),
-            astray=asked.astray(found),
+            slopes=asked.of_engine(by),
+            gaps=gaps(asked.scene, poses_at(asked.scene, found.places)),
+            astray=asked.astray(motion),
             finer=finer,
             wall_s=wall,
         )

@@ -77,7 +77,7 @@ def told(
     n = QUESTION.followed[0]
     c, s = math.cos(turn), math.sin(turn)
     own[..., n] = own[..., n] @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    gaps, astray = {"C": np.array([0.0, opening])}, np.array([0.0, elsewhere])
+    gaps, astray = {"C": np.array([0.0, opening * FOURBAR.longest_m])}, np.array([0.0, elsewhere])
     return EngineGradient(QUESTION, "fake", "1.0", "tuned", "tape", "", own, gaps, astray)
 
 
