@@ -43,6 +43,7 @@ from models.scene.joints import (
 from models.scene.loads import ConstantFriction, LineSpring, Load, PinSpring, SlideSpring, Spring
 from models.scene.pairs import CamPair, Gear
 from sim.engine import (
+    Batches,
     BodyPose,
     Drive,
     Engine,
@@ -66,6 +67,7 @@ from sim.engine.tree_poses import body_poses
 
 __all__ = [
     "GROUND",
+    "Batches",
     "Beam",
     "BodyPose",
     "CamPair",

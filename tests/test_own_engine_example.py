@@ -8,6 +8,7 @@ import pytest
 from reports.selftest.trial import FAULTS, sites
 from sim.registry import engine
 from tests.worlds.command_line import flat, told
+from tests.worlds.in_process import Here, in_this_process
 from tests.worlds.own_engines import CODE, fresh, installed
 
 
@@ -31,7 +32,7 @@ def test_it_is_one_short_file_that_imports_the_public_names_alone() -> None:
 def test_installed_it_is_listed_checked_swept_and_shown(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Two workers are started; nothing less shows that they find it."""
+    """A worker is started for the sweep; nothing less shows that it finds it."""
     Path("penalty_engine.py").unlink()
     site = tmp_path / "site"
     site.mkdir()
@@ -40,7 +41,9 @@ def test_installed_it_is_listed_checked_swept_and_shown(
     listed = flat(told("engines --settings"))
     assert "penalty 1.0 as-shipped" in listed
     assert "stiffness = 0.8: a six-bar is unstable" in listed
-    checked = told("engines check penalty --clause EC41")
+    with in_this_process() as patch:
+        patch.setattr("reports.contract.ruling.Isolated", Here)
+        checked = told("engines check penalty --clause EC41")
     assert "HOLDS THE CONTRACT: penalty 1.0, 1 of 1 clause" in checked
     Path("study.toml").write_text(
         'scenes = ["fourbar-lecture-1"]\nsteps_per_turn = [90, 180]\n'
@@ -56,7 +59,8 @@ def test_installed_it_is_listed_checked_swept_and_shown(
 
 def test_it_is_out_of_tolerance_by_its_own_name_where_faults_are_planted_too() -> None:
     own = "--engine penalty_engine:ENGINE --profile tuned --turns 1"
-    said = told(f"verify fourbar-lecture-1 {own}", code=1)
+    with in_this_process():
+        said = told(f"verify fourbar-lecture-1 {own}", code=1)
     assert "OUT  fourbar-lecture-1, penalty, tuned" in said
     assert "order 2.0" in said
     engine("penalty_engine:ENGINE")
@@ -73,4 +77,5 @@ def test_it_is_out_of_tolerance_by_its_own_name_where_faults_are_planted_too() -
     ],
 )
 def test_what_it_has_not_is_said(line: str, words: str) -> None:
-    assert words in flat(told(line.replace("X", "penalty_engine:ENGINE"), code=2))
+    with in_this_process():
+        assert words in flat(told(line.replace("X", "penalty_engine:ENGINE"), code=2))

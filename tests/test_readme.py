@@ -73,7 +73,7 @@ def test_the_readme_is_short_without_what_takes_long_and_says_the_two_commands()
 
 def test_pages_count_all_faults_that_are_planted_and_hard_cases_that_run_unnamed() -> None:
     of = Counter(fault.kind for fault in FAULTS.values())
-    motions = of["motion"] + of["contact"]  # planted together
+    motions = of["motion"] + of["contact"] + of["batch"]  # planted together
     driven = sum(case.way == "driven" for case in CATALOGUE.values())
     counts = {
         f"plants {motions} faults": "reference/tolerances",

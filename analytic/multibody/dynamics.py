@@ -109,27 +109,31 @@ class Dynamics:
         return EnergyBalance(0.5 * (now.rates * pushed).sum(axis=1), potential, work)
 
     def closed(self, q: Array, rates: Array) -> tuple[Array, Array]:
-        """Return the coordinates (n,) on the constraints next to the given ones, in the norm of the
-        mass matrix, and the rates that the constraints allow."""
+        """Return the coordinates (T, n) on the constraints next to the given ones, in the norm of
+        the mass matrix, and the rates that the constraints allow."""
         assembly = self.assembly
         unit = max(1.0, assembly.scene.longest_m)
-        now = assembly.at_rest(q[None])
-        saddle = Saddle(
-            assembly.mass(now.q)[0], assembly.joints.jacobian(now)[0], redundant=self.redundant
-        )
+        now = assembly.at_rest(q)
+        pairs = zip(assembly.mass(q), assembly.joints.jacobian(now), strict=True)
+        saddles = [Saddle(*pair, redundant=self.redundant) for pair in pairs]
+
+        def closing(gaps: Array) -> Array:
+            each = zip(saddles, gaps, strict=True)
+            return np.array([saddle.solve(0.0, -own)[0] for saddle, own in each]).reshape(q.shape)
+
         for _ in range(MOST_PROJECTIONS):
-            step, _ = saddle.solve(0.0, -assembly.joints.gaps(now)[0])
+            step = closing(assembly.joints.gaps(now))
             now = assembly.at_rest(now.q + step)
-            if np.abs(step).max() <= NEAR * unit:
+            if np.abs(step).max(initial=0.0) <= NEAR * unit:
                 break
-        step, _ = saddle.solve(0.0, -assembly.joints.jacobian(now)[0] @ rates)
-        return now.q[0], rates + step
+        opening = (assembly.joints.jacobian(now) @ rates[:, :, None])[:, :, 0]
+        return now.q, rates + closing(opening)
 
     def closed_state(self, state: Array) -> Array:
         """Project a state of q, q' and the work, (2 n + 1,), onto the constraints."""
         n = self.assembly.size
-        q, rates = self.closed(state[:n], state[n : 2 * n])
-        return np.concatenate([q, rates, state[2 * n :]])
+        q, rates = self.closed(state[None, :n], state[None, n : 2 * n])
+        return np.concatenate([q[0], rates[0], state[2 * n :]])
 
 
 SOFT = 1e-7

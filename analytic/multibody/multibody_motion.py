@@ -112,8 +112,7 @@ class MultibodyMotion:
         thirds = (4.0 * seconds[1] - 3.0 * seconds[0] - seconds[2]) / (2.0 * h)
         q = now.q[0] + t * (now.rates[0] + t * (seconds[0] / 2.0 + t * thirds / 6.0))
         rates = now.rates[0] + t * (seconds[0] + t * thirds / 2.0)
-        for i in range(len(q)):
-            q[i], rates[i] = self.dynamics.closed(q[i], rates[i])
+        q, rates = self.dynamics.closed(q, rates)
         assembly = self.dynamics.assembly
         return as_motion(assembly, time_s, assembly.at_rates(q, rates), seconds[0] + t * thirds)
 
@@ -171,8 +170,8 @@ class MultibodyMotion:
             state = self._history.state(np.minimum(some, self.until_s)).T
             q, rates = state[:, :n], state[:, n : 2 * n]
             if isinstance(self.method, Projection):  # between steps too
-                for i in np.flatnonzero(~self._passed(some)):
-                    q[i], rates[i] = self.dynamics.closed(q[i], rates[i])
+                within = ~self._passed(some)
+                q[within], rates[within] = self.dynamics.closed(q[within], rates[within])
             yield some, assembly.at_rates(q, rates), state[:, -1]
 
     def sensitivity(self, time_s: Array) -> Array:
@@ -202,7 +201,7 @@ class MultibodyMotion:
         # As many coordinates as freedoms, those that move most, keep their speeds.
         leads = qr(free / unit[:, 0], mode="r", pivoting=True)[1][: len(free)]
         for direction in free:
-            moved = self.dynamics.closed(q + NUDGE * direction, rates)[0]
+            moved: Array = self.dynamics.closed((q + NUDGE * direction)[None], rates[None])[0][0]
             beside = outset.freedoms(moved)
             as_fast = np.linalg.lstsq(beside[:, leads].T, rates[leads], rcond=None)[0] @ beside
             for start in ((moved, as_fast), (q, rates + NUDGE * per_s * direction)):

@@ -129,7 +129,7 @@ def _freer(dynamics: Dynamics, q: Array, directions: Array) -> bool:
     """True if a position has more freedoms than those next to it."""
     outset = Outset(dynamics.assembly)
     for direction in directions:
-        beside, _ = dynamics.closed(q + 1e-3 * direction, np.zeros_like(q))
+        beside = dynamics.closed((q + 1e-3 * direction)[None], np.zeros((1, len(q))))[0][0]
         if len(outset.freedoms(beside)) < len(directions):
             return True
     return False

@@ -101,7 +101,18 @@ def cell_row(checked: Checked) -> dict[str, object]:
         "settings": json.dumps(dict(checked.settings)),
         "warnings": " | ".join(checked.warnings),
     }
+    row |= _of_batch(checked) if checked.cell.worlds else {}
     return row | _worst_force(checked) if checked.cell.with_forces else row
+
+
+def _of_batch(checked: Checked) -> dict[str, object]:
+    """Return the columns of a batch: its request, and the facts of its worlds, None for none."""
+    cell, batch = checked.cell, checked.batch
+    names = ("worst", "error", "error_in", "lost", "difference", "exact", "bound", "us_per_step")
+    facts = {f"batch_{name}": getattr(batch, name, None) for name in (*names, "us_alone")}
+    holds = batch.holds.items() if batch else ()
+    swapped = " ".join(f"{world}:{of}" for world, of in holds)
+    return {"worlds": cell.worlds, "threads": cell.threads, **facts, "batch_swapped": swapped}
 
 
 def _worst_force(checked: Checked) -> dict[str, object]:

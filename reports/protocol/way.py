@@ -85,6 +85,7 @@ class Way(Protocol):
     ========== ===============================================================================
     columns    the columns of its cells, a `reports.judge.rows.ColumnsOf`
     table      the table of its cells, a `reports.verify.table.CellTable`
+    batches    the table of its cells in batches, also a `CellTable`; of driven scenes alone
     footer     the lines under the table, `reports.verify.table.Part` each, also there
     faults     the faults that are planted in its runs, a `reports.selftest.fault.FaultSet`
     cases      the hard cases of its scenes, by group (`reports.stability.case.Case`)

@@ -1,17 +1,19 @@
 """Options that several requests share."""
 
 import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_type_hints
 
 import typer
 
 from models.errors import CrankcheckError, shown
 from reports.figures.layout import Layout
+
+Number = TypeVar("Number", int, float)
 
 
 def seconds(text: str) -> float:
@@ -48,6 +50,19 @@ def note_of(field: str, kind: object, note: object, default: object) -> Any:
     if not isinstance(note, str):
         return note
     return option(note, name_of(field) * (kind is bool and not default))
+
+
+def numbers(
+    option: str, text: str | None, kind: Callable[[str], Number], noun: str, such_as: str
+) -> list[Number]:
+    """Parse numbers with commas between, none for no text. Raises CrankcheckError."""
+    parts = [] if text is None else text.split(",")
+    try:
+        return [kind(part) for part in parts]
+    except ValueError:
+        raise CrankcheckError(
+            f"{option} {shown(text)}: write {noun} with commas between, such as {such_as}"
+        ) from None
 
 
 def name_of(field: str) -> str:
@@ -228,6 +243,10 @@ class VerifyOptions:
     segments: SegmentCount = None
     springs: SpringKind = None
     facets: Facets = None
+    worlds: Annotated[
+        str | None,
+        option("Run a batch of so many worlds, their cranks spread over a turn.", "N,N,..."),
+    ] = None
     known: KnownPath = None
     write_known: WriteKnown = None
     strict_known: StrictKnown = False

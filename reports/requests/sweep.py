@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from rich.console import Console
 
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
 
 Values = float | int | str | Sequence[float | int | str]
-Number = TypeVar("Number", int, float)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -251,20 +250,20 @@ def asked(request: SweepRequest) -> Study:
         request.scenes,
         request.engines,
         request.profiles,
-        _numbers("--steps-per-turn", request.steps_per_turn, float, "numbers", "90,180,360"),
+        options.numbers("--steps-per-turn", request.steps_per_turn, float, "numbers", "90,180,360"),
         request.turns,
         _overrides(request.settings, engines),
         request.forces,
         request.free,
-        _numbers("--dt", request.dt_s, float, "numbers", "2e-3,1e-3"),
+        options.numbers("--dt", request.dt_s, float, "numbers", "2e-3,1e-3"),
         request.duration_s,
-        _numbers("--segments", request.segments, _segments, "whole numbers", "4,8,16"),
+        options.numbers("--segments", request.segments, _segments, "whole numbers", "4,8,16"),
         [
             chosen_springs(each.strip())
             for each in (request.springs or "").split(",")
             if each.strip()
         ],
-        _numbers("--facets", request.facets, int, "whole numbers", "90,360,1440"),
+        options.numbers("--facets", request.facets, int, "whole numbers", "90,360,1440"),
     )
     return chosen_study(study, choice, is_shipped=request.study is None)
 
@@ -290,15 +289,3 @@ def _overrides(
 
 def _segments(text: str) -> int:
     return chosen_segments(int(text))
-
-
-def _numbers(
-    option: str, text: str | None, kind: Callable[[str], Number], noun: str, such_as: str
-) -> list[Number]:
-    parts = [] if text is None else text.split(",")
-    try:
-        return [kind(part) for part in parts]
-    except ValueError:
-        raise CrankcheckError(
-            f"{option} {shown(text)}: write {noun} with commas between, such as {such_as}"
-        ) from None

@@ -19,11 +19,17 @@ from reports.output.console import say_whole, tell
 from reports.output.formats import csv, json_text, junit, parquet
 from reports.output.printed import Print, as_html, present
 from reports.output.write import Outputs, provenance
-from reports.plan import requirements
+from reports.plan import batches, requirements
 from reports.plan.singular import gives_forces, silent_note
 from reports.protocol.length import Length
 from reports.protocol.way import driven_by, laid_out, way_of
-from reports.requests.options import PRESCRIBED, VerifyOptions, refuse_of_models
+from reports.requests.options import (
+    PRESCRIBED,
+    VerifyOptions,
+    given,
+    numbers,
+    refuse_of_models,
+)
 from reports.requests.solution import drawn
 from reports.verify.advised import check_all
 from reports.verify.table import show, suite, summary
@@ -67,7 +73,8 @@ class VerifyRequest(VerifyOptions):
         base = _baseline(self, cells, digests)
         with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
             task = bar.add_task("verifying", total=len(cells))
-            checked = check_all(cells, self.jobs, lambda _: bar.advance(task))
+            jobs = self.jobs or int(self.worlds is not None)  # costs are of one run at a time
+            checked = check_all(cells, jobs, lambda _: bar.advance(task))
         checked = known.marked(checked, failing)
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
@@ -86,13 +93,23 @@ class VerifyRequest(VerifyOptions):
             from reports.page.build import printed_page  # whose packages nothing else here needs
 
             scenes = {one.cell.scene.name: one.cell.scene for one in checked}.values()
-            return printed_page(title, facts, as_html("".join(map(drawn, scenes)), *shows))
+            pictures = [*map(drawn, scenes), _of_batches(checked)]
+            return printed_page(title, facts, as_html("".join(pictures), *shows))
 
         files = contents(checked, facts, digests, diff, before) | {"verify.html": page}
         with outputs.written(files):
             present(console, self.format, title, *shows)
         mended = self.strict_known and any(one.mended for one in checked)
         return _code(checked, diff, progress) or int(mended)
+
+
+def _of_batches(checked: Sequence[Checked]) -> str:
+    """The diagram of batches, as SVG; "" where there are none."""
+    if not any(one.cell.worlds for one in checked):
+        return ""
+    from reports.figures.batches import batches_picture  # and its packages
+
+    return batches_picture([rows.cell_row(one) for one in checked])
 
 
 def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> int:
@@ -111,20 +128,25 @@ def plan(request: VerifyOptions) -> list[Cell]:
     """The cells of the request; with forces, engines that report none run without them unless they
     are named. Raises CrankcheckError for cells that can not be run."""
     limits = tolerance.parse(request.tolerance)
+    sizes = _sizes(request)
     if not request.forces:
         tolerance.refuse_forces_unasked("--tol", limits)
     facets = [] if request.facets is None else [request.facets]
     scenes = requirements.by_contact(_scenes(request), facets)
+    if sizes:
+        scenes = batches.startable(scenes, named=bool(request.scenes))
     _refuse_options(request, scenes)
     tolerance.refuse_of_other_kinds("--tol", limits, (way_of(scene).limits for scene in scenes))
     engines = requirements.chosen_engines(request.engines)
-    profiles = requirements.chosen_profiles(request.profiles, engines)
+    if sizes and not request.engines:
+        engines = batches.with_batches(engines)
+    only = requirements.PROFILES[:1] if sizes else ()
+    profiles = requirements.chosen_profiles(request.profiles or only, engines)
     given = requirements.given_of(scenes, request.segments, request.springs)
     asked = Length(request.dt_s, request.steps_per_turn, request.turns, request.duration_s)
+    length_of = batches.batch_length if sizes else requirements.usual_length
     lengths = {
-        (name, scene.name): requirements.usual_length(
-            name, scene, asked, named=bool(request.scenes)
-        )
+        (name, scene.name): length_of(name, scene, asked, named=bool(request.scenes))
         for name in engines
         for scene in scenes
     }
@@ -144,16 +166,30 @@ def plan(request: VerifyOptions) -> list[Cell]:
             gated=gated,
             drive=driven_by(scene, cast(Drive, request.drive)),
             tolerance=limits,
-            converge=request.converge,
+            converge=request.converge and not worlds,
             with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
             segments=given.segments,
             springs=given.springs,
+            worlds=worlds,
+            threads=threads,
         )
         for scene in scenes
         for profile, gated in profiles
         for name in engines
         if (length := lengths[name, scene.name]) and profile in engine(name).profiles
+        for worlds, threads in batches.batches_of(name, sizes)
     ]
+
+
+def _sizes(request: VerifyOptions) -> list[int]:
+    """The numbers of worlds of batches. Raises CrankcheckError for other options that batches do
+    not have."""
+    sizes = numbers("--worlds", request.worlds, int, "whole numbers", "1,16,256")
+    for option in given(request, *NOT_IN_BATCHES) if sizes else ():
+        raise CrankcheckError(
+            f"--worlds and {option}: a batch runs the motion of driven scenes alone; leave out one"
+        )
+    return batches.checked_sizes(sizes)
 
 
 def _scenes(request: VerifyOptions) -> list[Scene]:
@@ -223,6 +259,7 @@ def _digests(request: VerifyRequest) -> dict[str, str]:
     return scene_digests(request.names)
 
 
+NOT_IN_BATCHES = ["baseline", "forces", "free", "duration_s", "segments", "springs", "write_known"]
 IN_FOLDER = {
     "verify.csv": "--csv",
     "verify.json": "--json",

@@ -163,7 +163,7 @@ IN_FOLDER = {
 }
 NOT_OF_MODELS = [
     *("scenes", "engines", "profiles", "jobs", "baseline"),
-    *("factor", "forces", "free", "duration_s"),
+    *("factor", "forces", "free", "duration_s", "worlds"),
 ]
 """Fields that apply to scenes alone."""
 

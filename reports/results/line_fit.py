@@ -10,6 +10,7 @@ alone goes through the same points. Five points can show parts that work against
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -115,13 +116,21 @@ def fit_line(
     ValueError
         Lengths differ, a step is not positive and finite, or an error is negative.
     """
-    ends = ["ok"] * len(dt_s) if statuses is None else list(statuses)
+    ends = ("ok",) * len(dt_s) if statuses is None else tuple(statuses)
+    return _fit_line(tuple(dt_s), tuple(error), rounding, ends)
+
+
+@lru_cache(maxsize=256)
+def _fit_line(
+    dt_s: tuple[float, ...], error: tuple[float, ...], rounding: float, ends: tuple[str, ...]
+) -> LineFit:
+    """Fit a line, which several sections of a page show."""
     sorted_out = points(dt_s, error, ends, rounding)
     failed = "" if sorted_out.bad is None else ends[sorted_out.bad]
     line = LineFit(
-        tuple(dt_s),
-        tuple(error),
-        tuple(ends),
+        dt_s,
+        error,
+        ends,
         "too few",
         used=(False,) * len(ends),
         measured=_mask(sorted_out.well, len(ends)),
@@ -135,7 +144,7 @@ def fit_line(
         return replace(line, kind="at rounding" if sorted_out.at_rounding else "too few")
     fitted = _fitted(line, sorted_out.fit)
     if fitted.kind == "floor" and fitted.floor <= NEAR_ROUNDING * rounding:
-        return fit_line(dt_s, error, rounding=NEAR_ROUNDING * rounding, statuses=statuses)
+        return _fit_line(dt_s, error, NEAR_ROUNDING * rounding, ends)
     return fitted
 
 

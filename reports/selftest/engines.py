@@ -101,7 +101,7 @@ def _servo(size: float, *args: Any, drive: Any, **options: Any) -> Run:
 @fault.planting
 def _misread(size: float, *args: Any, **options: Any) -> Run:
     """Take velocities at the instants of the positions, where Euler's are not."""
-    done = fault.in_settings("semi-implicit")(size)(*args, **options)
+    done: Run = fault.in_settings("semi-implicit")(size)(*args, **options)
     return replace(done, velocity_time_s=moved(done).time_s)
 
 

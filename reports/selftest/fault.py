@@ -107,7 +107,7 @@ class Unseen:
     shows: bool = True
 
 
-def planting(runner: Callable[..., Run]) -> Plant:
+def planting(runner: Callable[..., Any]) -> Plant:
     """Return the plant of a runner that takes the size first, before the arguments of a run."""
     return lambda size: partial(runner, size)
 

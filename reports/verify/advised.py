@@ -42,7 +42,7 @@ def _mendable(checked: Checked) -> bool:
     """True if settings may help: a servo lags by itself; other profiles are to use this one."""
     cell = checked.cell
     return (
-        (cell.profile, cell.drive) == ("tuned", "prescribed")
+        (cell.profile, cell.drive, cell.worlds) == ("tuned", "prescribed", 0)
         and checked.status in ENDS
         and any(finding.rule in (*TUNABLE, *RATES, *FORCES) for finding in checked.failures)
     )

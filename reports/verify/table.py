@@ -16,6 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.compare.errors import Error, largest
+from reports.compare.worlds import MOST_ALONE
 from reports.judge.cell import Checked
 from reports.judge.rules import FORCES, RULES, titled
 from reports.judge.rules.rule import Finding
@@ -48,7 +49,8 @@ class CellTable:
 
     ``numbers`` are quantities by the head of their column. ``rooms`` lists, for terminals of at
     least so many columns, the heads shown, and those filled by ``before``, before the share of a
-    limit; ``after`` comes behind it. From ``apart`` columns on the engine has its own.
+    limit; ``after`` comes behind it, and ``last`` at the end. From ``apart`` columns on the engine
+    has its own.
     """
 
     title: str
@@ -60,6 +62,7 @@ class CellTable:
     apart: float = math.inf
     names: int = 18
     forces: bool = False
+    last: str = HALVED
 
     def shown(self, role: str, chosen: Sequence[Checked], width: int, styles: Styles) -> Table:
         """Return the cells of one profile in a role, those out of tolerance first; ``styles`` are
@@ -71,12 +74,12 @@ class CellTable:
         first = ("scene", "engine") if apart else ("scene\nengine",)
         after = ("error /\nlimit", *self.after_heads)
         table = grid(
-            ("", *first, *(f"{head}:" for head in (*heads, *before)), *after, HALVED),
+            ("", *first, *(f"{head}:" for head in (*heads, *before)), *after, self.last),
             title=f"{self.title}profile {role}",
             gap=1,
             whole=("engine", *after),
             cut=("",),
-            least={first[0]: self.names} | ({HALVED: 15} if apart else {}),
+            least={first[0]: self.names} | ({self.last: 15} if apart else {}),
         )
         table.columns[-1].max_width = None if apart else 14
         shares = []
@@ -158,7 +161,7 @@ def _words_of_rules(shares: Iterable[str]) -> str:
     return f"error / limit: {'; '.join(told)}" if told else ""
 
 
-UNITS, LINK_UNITS, OF_FORCES, MORE_UNITS, MORE_STEPS, NOTES, STEPS, SLOW = range(8)
+UNITS, LINK_UNITS, OF_FORCES, MORE_UNITS, MORE_STEPS, NOTES, STEPS, BATCHES, SLOW = range(9)
 """Places of parts: units and steps of cells, with those of free motion between."""
 OF_FORCES_WORDS = (
     "Forces against kinetostatics at their own instants; F largest reaction, M largest torque over "
@@ -166,9 +169,18 @@ OF_FORCES_WORDS = (
 )
 
 
+OF_BATCHES_WORDS = (
+    "Batches: the cranks of the worlds, numbered from 0, start spread over a turn; errors are the "
+    "largest of all worlds. From alone: largest difference of place [rad, or of L] from at most "
+    f"{MOST_ALONE} worlds that are run alone too, 0 to the bit. Costs are those of a step of one "
+    "world, logged, one run at a time, without compiling; alone: the median."
+)
+
+
 def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     """Return units, steps and versions."""
     of_all: list[Part] = [(OF_FORCES, _of_forces), (NOTES, _notes), (SLOW, _slow)]
+    of_all.append((BATCHES, _of_batches))
     own = {part: [*checked] for part in of_all}
     for one in checked:
         for part in cast(Sequence[Part], one.cell.way.part("footer")):
@@ -181,6 +193,10 @@ def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
 
 def _of_forces(checked: Sequence[Checked]) -> Sequence[str]:
     return [OF_FORCES_WORDS] * any(one.cell.with_forces for one in checked)
+
+
+def _of_batches(checked: Sequence[Checked]) -> Sequence[str]:
+    return [OF_BATCHES_WORDS] * any(one.cell.worlds for one in checked)
 
 
 def _notes(checked: Sequence[Checked]) -> list[str]:
@@ -196,11 +212,12 @@ def _notes(checked: Sequence[Checked]) -> list[str]:
 
 def _slow(checked: Sequence[Checked]) -> list[str]:
     """Return the defaults of engines whose steps take long, each once."""
-    names = dict.fromkeys(one.cell.engine for one in checked)
+    names = {one.cell.engine: one.cell.worlds for one in checked}
     found = {name: declaration(name).fewer for name in names}
     return [
         f"{name}: slow on a processor; by default {fewer.steps_per_turn:g} steps a turn, "
-        f"{fewer.turns:g} turn, and {count(len(fewer.scenes), 'scene')} where none is named."
+        f"{fewer.lasts(in_batch=bool(names[name]))}, and {count(len(fewer.scenes), 'scene')} where "
+        "none is named."
         for name, fewer in found.items()
         if fewer
     ]
@@ -229,7 +246,7 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
         role = f"{profile} ({'gated' if gated else 'shown, not gated'})"
         for table in _tables(chosen):
-            own = [one for one in chosen if one.cell.way.part("table") is table]
+            own = [one for one in chosen if _table(one) is table]
             console.print(table.shown(role, own, console.width, styles), "")
         loaded = [one for one in chosen if one.cell.with_forces and one.errors]
         if loaded:
@@ -257,12 +274,12 @@ def _failures(console: Console, failed: Sequence[Checked]) -> None:
 
 def _tables(checked: Sequence[Checked]) -> list[CellTable]:
     """Return the tables of the cells, the most general first."""
-    ways = {one.cell.way.name: one.cell.way for one in checked}
-    return list(
-        dict.fromkeys(
-            cast(CellTable, ways[name].part("table")) for name in reversed(WAYS) if name in ways
-        )
-    )
+    ordered = sorted(checked, key=lambda one: -WAYS.index(one.cell.way.name))
+    return list(dict.fromkeys(map(_table, ordered)))
+
+
+def _table(one: Checked) -> CellTable:
+    return cast(CellTable, one.cell.way.part("batches" if one.cell.worlds else "table"))
 
 
 def _advice(console: Console, checked: Sequence[Checked]) -> None:
@@ -313,7 +330,8 @@ def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
 
 def _case(one: Checked) -> Element:
     cell = one.cell
-    case = case_of(f"{cell.engine}.{cell.profile}", cell.scene.name, f"{one.wall_s:.3f}")
+    name = f"{cell.scene.name}{cell.in_batch}"
+    case = case_of(f"{cell.engine}.{cell.profile}", name, f"{one.wall_s:.3f}")
     text = "\n".join(_line(finding) for finding in one.failures)
     head = one.failures[0].text if one.failures else "within tolerance"
     if not cell.gated:

@@ -6,9 +6,9 @@ adapter turns the engine's own coordinates into `Poses`; everything after that i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 from models.array import Array
 from models.motion import Forces, Motion, State
@@ -184,6 +184,23 @@ class ForceSession(Session, Protocol):
 
 
 @dataclass(frozen=True)
+class Batches:
+    """Stepping of several sessions of one kind as the worlds of a batch.
+
+    ``record`` takes sessions at their starts, steps, ``every`` and a number of threads; it returns
+    the logs in the order of the sessions, as `Session.record`, each with its part of the wall time,
+    without that of compiling. The sessions are of no use afterwards. It raises EngineError where
+    they do not fit into one batch. ``threads`` is the most that it takes. A world differs from the
+    same session alone by no more than the engine's ``floor``; ``why`` it does at all, "" if it is
+    the same to the bit.
+    """
+
+    record: Callable[[Sequence[Any], int, int, int], Sequence[Log]]
+    why: str = ""
+    threads: int = 1
+
+
+@dataclass(frozen=True)
 class Engine:
     """A physics engine with its profiles.
 
@@ -203,7 +220,8 @@ class Engine:
     ``applies_cams_by_contact`` scenes with these; with springs `Facts.springs` has each. Without
     ``applies_beams`` elastic links come only as segments; with it `Facts.beams` has the beams.
     ``precision`` is that of the engine's numbers, ``floor`` the pure error of places that it leaves
-    at any step; ``numbers_with`` gives both where settings choose them.
+    at any step; ``numbers_with`` gives both where settings choose them. ``batches`` is None for an
+    engine that runs one world at a time.
     """
 
     name: str
@@ -229,6 +247,7 @@ class Engine:
     unreported: Callable[[Scene, Drive], Unreported] = lambda scene, drive: REPORTED
     no_forces: str = ""
     numbers_with: Callable[[Settings], tuple[Precision, float]] | None = None
+    batches: Batches | None = None
 
     def numbers(self, settings: Settings) -> tuple[Precision, float]:
         """Return precision and floor with a complete set of settings."""

@@ -8,7 +8,7 @@ of each body's momentum in a step, are here.
 import math
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -161,11 +161,16 @@ class SteppedSession(ABC):
         return self._recorded(steps, every, [self.joint_forces()])
 
     def _recorded(self, steps: int, every: int, forces: list[Any] | None) -> Log:
-        at = self.done + every * np.arange(steps // every + 1, dtype=np.float64)
-        began = time.perf_counter()
+        first, began = self.done, time.perf_counter()
         rows = [self.numbers()]
         self._run(steps, every, rows, forces)
-        wall = time.perf_counter() - began
+        return self._logged(first, every, rows, forces, time.perf_counter() - began)
+
+    def _logged(
+        self, first: int, every: int, rows: list[Array], forces: list[Any] | None, wall: float
+    ) -> Log:
+        """Return the log of rows of `numbers`, from the step ``first`` on."""
+        at = first + every * np.arange(len(rows), dtype=np.float64)
         whole = np.array(rows)
         good = np.isfinite(whole).reshape(len(whole), -1).all(axis=1)
         count = len(rows) if good.all() else max(int(np.argmin(good)), 1)
@@ -175,7 +180,13 @@ class SteppedSession(ABC):
         return log if forces is None else replace(log, forces=self.acted(forces[:count], poses))
 
     def _run(self, steps: int, every: int, rows: list[Array], forces: list[Any] | None) -> None:
-        """Take the steps; add numbers, and forces, after every ``every``-th."""
+        for _ in self._steps(steps, every, rows, forces):
+            self.once()
+
+    def _steps(
+        self, steps: int, every: int, rows: list[Array], forces: list[Any] | None
+    ) -> Iterator[None]:
+        """Stop where a step is to be taken; add numbers, and forces, after every ``every``-th."""
         turns = self._turns(steps) if self.drive != "free" else []
         if self.acting:
             times = self.done + self.acts_at + np.arange(steps, dtype=np.float64)
@@ -188,7 +199,7 @@ class SteppedSession(ABC):
             if self.acting:
                 self.pushed = self.acting.pushes(k, self.frames(self.acts_at * self.dt))
                 self.push(self.pushed)
-            self.once()
+            yield
             self.done += 1
             if every and (k + 1) % every == 0:
                 rows.append(self.numbers())

@@ -1,16 +1,18 @@
 """MJX: MuJoCo's models stepped in a compiled loop of JAX."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from copy import copy
+from functools import partial
 from importlib import import_module
 from importlib.metadata import version
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from models.array import Array
-from sim.engine import AT_ROUNDING
+from sim.engine import AT_ROUNDING, Batches
 from sim.engine.imported import imported
 from sim.engine.settings import shipped_engine
 from sim.mjx import settings as own
@@ -24,6 +26,7 @@ os.environ.setdefault(
 mjx = imported("mujoco.mjx")  # it imports Warp, where that is installed
 jax: Any = import_module("jax")  # so that types do not depend on what is installed
 jnp: Any = import_module("jax.numpy")
+CPU = jax.devices("cpu")[0]
 VERSION = version_of(version("mujoco-mjx"))
 MOST = 4000
 """Steps of a compiled loop at most: its arrays have one size, so that it is compiled once."""
@@ -44,10 +47,13 @@ class MjxSession(PortedSession):
 
     def _put(self) -> None:
         with self._as_numbers():
-            self._there = mjx.put_model(self._model, impl="jax")
-            data = self._data
+            there, data = mjx.put_model(self._model, impl="jax"), self._data
+            # Compiled code is used again for arrays that are on a device by name, as results are,
+            # and for models that are alike in all that is no such array.
+            keys = {name: np.zeros_like(getattr(there, name)) for name in ("key_qpos", "key_qvel")}
+            self._there = there.replace(**keys)
             start = {"qpos": data.qpos, "qvel": data.qvel, "ctrl": data.ctrl}
-            start = {name: jnp.array(value) for name, value in start.items()}
+            start = {name: jax.device_put(value.copy(), CPU) for name, value in start.items()}
             self._now = mjx.make_data(self._model, impl="jax").replace(**start)
         there, options = self._there, self._there.opt
         self._take_back(lambda name: getattr(there, name), lambda name: getattr(options, name))
@@ -55,23 +61,40 @@ class MjxSession(PortedSession):
     @contextmanager
     def _as_numbers(self) -> Iterator[None]:
         """Let JAX have numbers of this session's precision, on the processor."""
-        with jax.enable_x64(not self.single), jax.default_device(jax.devices("cpu")[0]):
+        with jax.enable_x64(not self.single), jax.default_device(CPU):
             yield
 
-    def _stepped(self, controls: Array, led: Array) -> Array:
-        rows, steps = [], len(controls) - 1
+    def _stepped(self, controls: Array, led: Array, run: Any = None) -> Array:
+        rows, steps = [], controls.shape[-2] - 1
         with self._as_numbers():
             for first in range(0, max(steps, 1), MOST):
                 count = min(steps - first, MOST)
-                given = [filled(each[first : first + count + 1]) for each in (controls, led)]
-                self._now, found = rolled(self._there, self._now, *given, self._crank, count)
-                rows.append(np.asarray(found, dtype=np.float64)[: count + (first + count == steps)])
-        return np.concatenate(rows)
+                kept = slice(first, first + count + 1)
+                given = [filled(each[..., kept, :]) for each in (controls, led)]
+                self._now, found = (run or rolled)(
+                    self._there, self._now, *given, self._crank, count
+                )
+                kept = slice(count + (first + count == steps))
+                rows.append(np.asarray(found, dtype=np.float64)[..., kept, :])
+        return np.concatenate(rows, axis=-2)
+
+    @classmethod
+    def _put_together(cls, sessions: Sequence[Self]) -> Callable[[Array, Array], Array]:
+        all_ = copy(sessions[0])
+        with all_._as_numbers():
+            for name in ("_there", "_now"):
+                stacked = jax.tree_util.tree_map(
+                    lambda *each: jax.device_put(jnp.stack(each), CPU),
+                    *(getattr(one, name) for one in sessions),
+                )
+                setattr(all_, name, stacked)
+        return partial(all_._stepped, run=rolled_together)
 
 
 def filled(rows: Array) -> Array:
     """Return the rows with others after them, to the size of the compiled loop."""
-    return np.concatenate([rows, np.zeros((MOST + 1 - len(rows), rows.shape[1]))])
+    missing = MOST + 1 - rows.shape[-2]
+    return np.concatenate([rows, np.zeros((*rows.shape[:-2], missing, rows.shape[-1]))], axis=-2)
 
 
 def _rolled(model: Any, data: Any, controls: Any, led: Any, crank: Any, count: Any) -> Any:
@@ -98,6 +121,7 @@ def _rolled(model: Any, data: Any, controls: Any, led: Any, crank: Any, count: A
 
 
 rolled: Any = jax.jit(_rolled)
+rolled_together: Any = jax.jit(jax.vmap(_rolled, in_axes=(0, 0, 0, 0, None, None)))
 ENGINE = shipped_engine(
     own,
     VERSION,
@@ -111,4 +135,8 @@ ENGINE = shipped_engine(
         ("single", FLOOR) if settings["precision"] == "float32" else ("double", AT_ROUNDING)
     ),
     applies_gears=True,
+    batches=Batches(
+        MjxSession.record_together,
+        "the matrices of all worlds are multiplied together, and so in another order",
+    ),
 )

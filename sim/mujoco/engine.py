@@ -4,10 +4,11 @@ The crank is driven by its armature, or an actuator (`models.mjcf.options`, `mod
 whose control comes from `sim.engine.drive`.
 """
 
-from collections.abc import Iterator, Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from models.mjcf.forces import SpringTendon, planned, spring_tendons
 from models.mjcf.tree import Tree, driven_freedom, plan
 from models.motion import State
 from models.scene import Scene
-from sim.engine import BodyPose, Drive, Facts, Log, Settings, SettingValue
+from sim.engine import Batches, BodyPose, Drive, Facts, Log, Settings, SettingValue
 from sim.engine import drive as drives
 from sim.engine.settings import SettingError, shipped_engine
 from sim.engine.tree_poses import body_poses
@@ -123,6 +124,18 @@ class MujocoSession(SteppedModel):
         with self._loading.in_stages(self._done, steps):
             return super()._roll(steps)
 
+    @classmethod
+    def _batch(
+        cls, sessions: Sequence[Self], steps: int, threads: int
+    ) -> Callable[[], Sequence[Array]]:
+        one = sessions[0]
+        if follow := [*one._loading.by_motion, *one._scene.cams]:
+            raise EngineError(
+                f"{one._scene.name}: {', '.join(follow)} follows the motion by calls from each "
+                "step, which in a batch do not know their world; run it alone"
+            )
+        return super()._batch(sessions, steps, threads)
+
     def _controls(self, steps: int) -> Array:
         """Return the controls of each of the next steps.
 
@@ -184,4 +197,5 @@ ENGINE = shipped_engine(
     applies_gears=True,
     applies_cams=True,
     applies_cams_by_contact=True,
+    batches=Batches(MujocoSession.record_together, threads=os.cpu_count() or 1),
 )

@@ -5,9 +5,9 @@ What follows from states is that of MuJoCo.
 """
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
@@ -103,18 +103,41 @@ class PortedSession(MujocoSession):
                 if not np.allclose(asked, found, rtol=rounding, atol=0.0):
                     setattr(model, name, found if found.ndim else type(asked)(found))
 
+    @classmethod
+    def _batch(
+        cls, sessions: Sequence[Self], steps: int, threads: int
+    ) -> Callable[[], Sequence[Array]]:
+        def given(count: int) -> tuple[Array, Array]:
+            controls = np.array([one._controls(count) for one in sessions])
+            return controls, np.array([one._led(count) for one in sessions])
+
+        with compiling():
+            stepped = cls._put_together(sessions)
+            stepped(*given(1))
+
+        def roll() -> Sequence[Array]:
+            rows = stepped(*given(steps + 1))
+            return [one._taken(each) for one, each in zip(sessions, rows, strict=True)]
+
+        return roll
+
+    @classmethod
+    @abstractmethod
+    def _put_together(cls, sessions: Sequence[Self]) -> Callable[[Array, Array], Array]:
+        """Give the engine the worlds of a batch, and return `_stepped` for all of them."""
+
     def _roll(self, steps: int) -> Array:
+        return self._taken(self._stepped(self._controls(steps + 1), self._led(steps + 1)))
+
+    def _taken(self, rows: Array) -> Array:
+        """Return the states after each step; the session goes on from the last."""
         model, data = self._model, self._data
-        rows = self._rows(steps + 1)
         count = model.nq + model.nv
         self._pushes_there, self._from = rows[:, count:], self._done
-        times = data.time + self._dt * np.arange(steps + 1)
+        times = data.time + self._dt * np.arange(len(rows))
         states = np.column_stack([times, rows[:, :count]])
         mujoco.mj_setState(model, data, states[-1], FULL)
         return states[1:]
-
-    def _rows(self, count: int) -> Array:
-        return self._stepped(self._controls(count), self._led(count))
 
     def _led(self, count: int) -> Array:
         """Return coordinate and rate of the crank before each of the next steps."""

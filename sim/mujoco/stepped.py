@@ -3,10 +3,10 @@
 import os
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from models.array import Array
 
@@ -88,12 +88,18 @@ class SteppedModel(ABC):
     def record(self, steps: int, every: int, look: Look | None = None) -> Log:
         """Advance in C, log every step, keep every ``every``-th; ``look`` gets each of these after
         `mj_forward`."""
-        first = self._full_state()[None]
+        first = self._full_state()
         began = time.perf_counter()
         with self._at_work():
             states = self._roll(steps)
-        wall = time.perf_counter() - began
-        kept = np.concatenate([first, states[every - 1 :: every]])
+        return self._logged(first, states, every, time.perf_counter() - began, look)
+
+    def _logged(
+        self, first: Array, states: Array, every: int, wall: float, look: Look | None = None
+    ) -> Log:
+        """Return the log of the states after each step from the ``first`` on."""
+        steps = len(states)
+        kept = np.concatenate([first[None], states[every - 1 :: every]])
         at = self._done + every * np.arange(len(kept), dtype=np.float64)
         good = np.abs(kept[:, 0] - kept[0, 0] - (at - self._done) * self._dt) < 0.5 * self._dt
         diverged = any(self._data.warning[kind].number for kind in DIVERGED)
@@ -103,6 +109,41 @@ class SteppedModel(ABC):
         self._done += steps
         warnings = tuple(dict.fromkeys(self._warnings))
         return Log(poses, (count - 1) * every, diverged or count < len(kept), warnings, wall)
+
+    @classmethod
+    def record_together(
+        cls, sessions: Sequence[Self], steps: int, every: int, threads: int
+    ) -> list[Log]:
+        """Record sessions as the worlds of a batch (`sim.engine.Batches`)."""
+        roll = cls._batch(sessions, steps, threads)
+        first = [one._full_state() for one in sessions]
+        began = time.perf_counter()
+        with sessions[0]._at_work():
+            states = roll()
+        wall = (time.perf_counter() - began) / len(sessions)
+        each = zip(sessions, first, states, strict=True)
+        return [one._logged(start, after, every, wall) for one, start, after in each]
+
+    @classmethod
+    def _batch(
+        cls, sessions: Sequence[Self], steps: int, threads: int
+    ) -> Callable[[], Sequence[Array]]:
+        """Return the stepping of a batch, which returns the states after each step by session."""
+        models = [one._model for one in sessions]
+        data = [mujoco.MjData(models[0]) for _ in range(threads)]
+
+        def roll() -> Sequence[Array]:
+            states, _ = rollout.rollout(
+                models,
+                data,
+                np.array([one._full_state() for one in sessions]),
+                np.array([one._controls(steps) for one in sessions]) if models[0].nu else None,
+                nstep=steps,
+                initial_warmstart=np.array([one._data.qacc_warmstart for one in sessions]),
+            )
+            return list(states)
+
+        return roll
 
     def read(self) -> Poses:
         """Read the current state."""
@@ -124,6 +165,7 @@ class SteppedModel(ABC):
         return np.asarray(states[0])
 
     def _full_state(self) -> Array:
+        """Return time, coordinates and rates, as MuJoCo's vector of a state."""
         state = np.empty(mujoco.mj_stateSize(self._model, FULL))
         mujoco.mj_getState(self._model, self._data, state, FULL)
         return state

@@ -9,6 +9,6 @@ DECLARATION = Declaration(
     precision="single",
     tried="4.0.",
     pip_name="mujoco-warp",
-    fewer=Fewer(),
+    fewer=Fewer(batch_steps=20),
     needs=("warp", "mujoco"),
 )

@@ -8,6 +8,6 @@ DECLARATION = Declaration(
     formulation="by solver",
     precision="single",
     tried="1.8.",
-    fewer=Fewer(steps_per_turn=90.0),
+    fewer=Fewer(steps_per_turn=90.0, batch_steps=20),
     needs=("warp",),
 )

@@ -1,8 +1,11 @@
 """Newton: links and joints, loops closed by ball joints, stepped by one of its solvers."""
 
 import math
+import time
+from collections.abc import Callable, Sequence
+from copy import copy
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -15,7 +18,7 @@ from models.scene import GROUND, Point, Scene
 from models.scene import joints as pairs
 from models.scene.joints import Frame, turned
 from sim.compiling import compiling
-from sim.engine import Drive, Facts, Settings
+from sim.engine import Batches, Drive, Facts, Log, Settings
 from sim.engine.acting import Push, Pushes
 from sim.engine.heavy_driver import HeavyDriverSession
 from sim.engine.settings import shipped_engine
@@ -34,6 +37,17 @@ def _version() -> str:
 
 
 VERSION = _version()
+
+
+class View:
+    """A state, and its arrays, which on the processor numpy sees as they are."""
+
+    def __init__(self, state: Any) -> None:
+        self.state = state
+        names = "body_q", "body_qd", "body_f", "joint_q", "joint_qd"
+        self.body_q, self.body_qd, self.body_f, self.joint_q, self.joint_qd = (
+            getattr(state, name).numpy() for name in names
+        )
 
 
 class NewtonSession(HeavyDriverSession):
@@ -60,20 +74,64 @@ class NewtonSession(HeavyDriverSession):
         self.rubbing, self.solver_name = [], str(settings["solver"])
         self.maximal = self.solver_name in MAXIMAL
         self.tree = planned(scene, state, delay_s=self.shift * dt_s)
-        self.model = self._model()
-        self.from_value, self.end = 0.0, (0.0, 0.0)
+        self.builder, self.first_rate = self._builder(), 0
+        self.model = self.builder.finalize(device="cpu", requires_grad=self.taped)
+        self.from_value, self.end, self.driven = 0.0, (0.0, 0.0), (0, 0)
         if self.led:
             driven, _ = driven_freedom(scene, self.tree.limbs)
             names = [freedom.name for limb in self.tree.limbs for freedom in limb.freedoms]
-            self.driven = names.index(driven)
+            self.driven = (names.index(driven),) * 2
             self.from_value = float(scene.driver.law.at(np.array([state.time_s]))[0][0])
-        with compiling():
-            self._start(made(self.model, settings, dt_s))
-            self.once()  # compiles all kernels
-        self._start(made(self.model, settings, dt_s))
+        self._start([self])
         self.begin()
 
-    def _model(self) -> Any:
+    @classmethod
+    def record_together(
+        cls, sessions: Sequence[Self], steps: int, every: int, threads: int
+    ) -> list[Log]:
+        """Record sessions as the worlds of a batch (`sim.engine.Batches`)."""
+        once = cls._put_together(sessions)
+        began = time.perf_counter()
+        each = [(one, [one.numbers()]) for one in sessions]
+        series = [one._steps(steps, every, rows, None) for one, rows in each]
+        for _ in zip(*series, strict=True):
+            once()
+        wall = (time.perf_counter() - began) / len(sessions)
+        return [one._logged(0, every, rows, None, wall) for one, rows in each]
+
+    @classmethod
+    def _put_together(cls, sessions: Sequence[Self]) -> Callable[[], None]:
+        """Make a model of the worlds of all sessions, which see it from then on; return its
+        step."""
+        one, bodies = sessions[0], sessions[0].model.body_count
+        if not one.maximal:
+            raise EngineError(
+                f"newton: crankcheck runs batches of {' and '.join(sorted(MAXIMAL))}; "
+                f"{one.solver_name} reads all worlds for each"
+            )
+        builder = newton.ModelBuilder()
+        register(builder, one.solver_name)
+        counts = one.model.joint_coord_count, one.model.joint_dof_count
+        for k, each in enumerate(sessions):
+            builder.add_world(each.builder)
+            own = {name: row + k * bodies for name, row in each.index.items()}
+            each.index = own | {GROUND: -1}
+            at, rate = each.driven
+            each.driven = at + k * counts[0], rate + k * counts[1]
+            each.first_rate = k * counts[1]
+        whole = copy(one)
+        whole.model = builder.finalize(device="cpu")
+        whole._start(sessions)
+
+        def once() -> None:
+            whole.advance()
+            for each in sessions:
+                each.now = whole.now
+                each.settle()
+
+        return once
+
+    def _builder(self) -> Any:
         builder = newton.ModelBuilder()
         register(builder, self.solver_name)
         builder.gravity = wp.vec3(*self.scene.gravity_m_s2, 0.0)
@@ -87,7 +145,7 @@ class NewtonSession(HeavyDriverSession):
             first, last = sorted(closure.bodies, key=[*self.index].index)
             ends = [row(self.bodies.anchor(name, closure.point), 0.0) for name in (first, last)]
             builder.add_joint_ball(self.index[first], self.index[last], **self._ends(*ends))
-        return builder.finalize(device="cpu", requires_grad=self.taped)
+        return builder
 
     def _link(self, builder: Any, name: str) -> int:
         (mass, inertia), frame = pairs.mass_of(self.scene, name), self.frame_of(name)
@@ -155,22 +213,40 @@ class NewtonSession(HeavyDriverSession):
             trees[-1].append(joint)
         return trees
 
-    def _start(self, solver: Any) -> None:
-        """Put the state of the start into the model, for a solver that has not stepped."""
-        self.solver, self.control = solver, self.model.control()
-        self.now, self.next, self.between = (self.model.state() for _ in range(3))
-        rates = [freedom.rate for limb in self.tree.limbs for freedom in limb.freedoms]
-        self.now.joint_qd.numpy()[: len(rates)] = rates
+    def _start(self, sessions: Sequence[Self]) -> None:
+        """Put the states of the start of sessions, this one or those of a batch, into the model."""
+        self.control = self.model.control()
+        with compiling():
+            for compiled in (False, True):
+                self.solver = made(self.model, self.settings, self.dt)
+                self.now, self.next, self.between = (View(self.model.state()) for _ in range(3))
+                for each in sessions:
+                    each.now = self.now
+                    each.put_rates()
+                if not compiled:
+                    self.advance()
+
+    def put_rates(self) -> None:
+        """Put the velocities of the start into the model."""
+        now, rates = self.now, [each.rate for limb in self.tree.limbs for each in limb.freedoms]
+        now.joint_qd[self.first_rate : self.first_rate + len(rates)] = rates
         for name in self.names:
-            frame = self.frame_of(name)
-            self.now.body_qd.numpy()[self.index[name]] = twist(frame)
+            now.body_qd[self.index[name]] = twist(self.frame_of(name))
         if not self.maximal:
-            newton.eval_fk(self.model, self.now.joint_q, self.now.joint_qd, self.now)
+            newton.eval_fk(self.model, now.state.joint_q, now.state.joint_qd, now.state)
+
+    def advance(self) -> None:
+        """Step the model."""
+        self.solver.step(self.now.state, self.next.state, self.control, None, self.dt)
+        self.now, self.next = self.next, self.now
 
     def once(self) -> None:
-        self.solver.step(self.now, self.next, self.control, None, self.dt)
-        self.now, self.next = self.next, self.now
-        if self.led and self.solver_name == "Kamino":  # which moves no led body by its velocity
+        self.advance()
+        self.settle()
+
+    def settle(self) -> None:
+        """Put the led body at the end of the step, for Kamino, which does not move it there."""
+        if self.led and self.solver_name == "Kamino":
             self._lead(*self.end)
 
     def turn(self, place: float | None, speed: float) -> None:
@@ -183,10 +259,10 @@ class NewtonSession(HeavyDriverSession):
         """Put the led body where its driver's coordinate is ``place``."""
         self.led_by = place, speed
         number, frame = self.index[str(self.led)], self.led_at(place, speed)
-        self.now.body_q.numpy()[number] = row(frame.origin, frame.theta)
-        self.now.body_qd.numpy()[number] = twist(frame)
-        self.now.joint_q.numpy()[self.driven] = place - self.from_value
-        self.now.joint_qd.numpy()[self.driven] = speed
+        self.now.body_q[number] = row(frame.origin, frame.theta)
+        self.now.body_qd[number] = twist(frame)
+        at, rate = self.driven
+        self.now.joint_q[at], self.now.joint_qd[rate] = place - self.from_value, speed
 
     def led_at(self, place: float, speed: float) -> Frame:
         """Return the frame of the led body where its driver's coordinate is ``place``."""
@@ -204,7 +280,7 @@ class NewtonSession(HeavyDriverSession):
         raise NotImplementedError
 
     def push(self, pushes: Pushes) -> None:
-        forces = self.now.body_f.numpy()
+        forces = self.now.body_f
         for name in (name for name in self.names if name != self.led):
             fx, fy, moment = pushes.on_bodies[name]
             forces[self.index[name]] = fx, fy, 0.0, 0.0, 0.0, moment
@@ -212,8 +288,8 @@ class NewtonSession(HeavyDriverSession):
     def look(self) -> Array:
         rows = [self.index[name] for name in self.names]
         there = self.now if self.maximal else self._at_rates()
-        q = self.now.body_q.numpy()[rows].astype(np.float64)
-        rate = there.body_qd.numpy()[rows].astype(np.float64)
+        q = self.now.body_q[rows].astype(np.float64)
+        rate = there.body_qd[rows].astype(np.float64)
         theta = 2.0 * np.arctan2(q[:, 5], q[:, 6])
         return np.column_stack([q[:, :2], theta, rate[:, :2], rate[:, 5]])
 
@@ -221,9 +297,9 @@ class NewtonSession(HeavyDriverSession):
         """Return the bodies at the instant of the joint rates."""
         now, there = self.now, self.between
         tree = slice(sum(len(limb.freedoms) for limb in self.tree.limbs))  # loops come after it
-        there.joint_q.assign(now.joint_q)
-        there.joint_q.numpy()[tree] += self.shift * self.dt * now.joint_qd.numpy()[tree]
-        newton.eval_fk(self.model, there.joint_q, now.joint_qd, there)
+        there.joint_q[:] = now.joint_q
+        there.joint_q[tree] += self.shift * self.dt * now.joint_qd[tree]
+        newton.eval_fk(self.model, there.state.joint_q, now.state.joint_qd, there.state)
         return there
 
     def facts(self) -> Facts:
@@ -262,4 +338,5 @@ ENGINE = shipped_engine(
     precision=DECLARATION.precision,
     floor=2e-6,
     applies_constant_friction=False,
+    batches=Batches(NewtonSession.record_together),
 )

@@ -15,7 +15,7 @@ from models.scene.joints import mass_of
 from sim.compiling import compiling
 from sim.engine import Settings
 from sim.engine.gradient import OFFSETS, STEP, PoseGradient, Variation, placed, slope
-from sim.newton.engine import NewtonSession, row, twist
+from sim.newton.engine import NewtonSession, View, row, twist
 from sim.newton.solvers import made, wp
 
 STATES: Mapping[str, tuple[str, ...]] = {
@@ -43,13 +43,14 @@ class TapedSession(NewtonSession):
     def once_taped(self) -> None:
         """Take one step, and the tangents along."""
         self._lead_tangents()
-        before, tape = [getattr(self.now, name) for name in self.kept], wp.Tape()
+        after, tape = self.model.state(), wp.Tape()
+        before = [getattr(self.now.state, name) for name in self.kept]
         with tape:
             solver = made(self.model, self.settings, self.dt)  # which inverts masses
-            solver.step(self.now, self.next, self.control, None, self.dt)
+            solver.step(self.now.state, after, self.control, None, self.dt)
         ahead = {name: np.zeros_like(each) for name, each in self.slopes.items()}
         for name in self.kept:
-            array = getattr(self.next, name)
+            array = getattr(after, name)
             shape = array.numpy().shape
             for place in _planar(name, shape):
                 seed = np.zeros(shape, dtype=np.float32)
@@ -61,9 +62,9 @@ class TapedSession(NewtonSession):
                     ahead[name][:, place] += by @ source.grad.numpy().ravel()
                 tape.zero()
         self.slopes = ahead
-        done, self.now, self.next = self.next, self.model.state(), self.model.state()
+        self.now = View(self.model.state())
         for name in ("body_q", "body_qd", "joint_q", "joint_qd"):
-            getattr(self.now, name).assign(getattr(done, name))
+            getattr(self.now, name)[:] = getattr(after, name).numpy()
 
     def _lead_tangents(self) -> None:
         """Put the tangents of the led body where its driver has put it."""
@@ -74,7 +75,7 @@ class TapedSession(NewtonSession):
             {"body_q": 7, "body_qd": 6, "joint_q": 1, "joint_qd": 1},
         )
         for name in self.kept:
-            first = width[name] * (number if name in PLANAR else self.driven)
+            first = width[name] * (number if name in PLANAR else self.driven[0])
             self.slopes[name][:, first : first + width[name]] = led[name]
 
     def placed_slopes(self) -> list[Array]:
@@ -160,7 +161,7 @@ def _start(session: NewtonSession, kept: Sequence[str]) -> dict[str, Array]:
     """Return the numbers of the state at the start."""
     frames = [session.frame_of(name) for name in session.index if name in session.names]
     rates = [freedom.rate for limb in session.tree.limbs for freedom in limb.freedoms]
-    sizes = {name: len(getattr(session.now, name).numpy()) for name in kept}
+    sizes = {name: len(getattr(session.now, name)) for name in kept}
     every = {
         "body_q": np.array([row(one.origin, one.theta) for one in frames]),
         "body_qd": np.array([twist(one) for one in frames]),

@@ -15,7 +15,7 @@ import os
 import re
 import sys
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -201,8 +201,20 @@ def watched(spelling: str, engine: Engine) -> Engine:
             raise place.fault("open", f"gave a session that lacks {', '.join(lacking)}")
         return WatchedSession(session, place, scene)
 
+    def together(
+        sessions: Sequence[WatchedSession], steps: int, every: int, threads: int
+    ) -> list[Log]:
+        assert engine.batches is not None
+        own = [one.session for one in sessions]
+        logs = engine.batches.record(own, steps, every, threads)
+        return [
+            one.checked("batches.record", log, steps // every + 1)
+            for one, log in zip(sessions, logs, strict=False)
+        ]
+
     return replace(
         engine,
+        batches=engine.batches and replace(engine.batches, record=together),
         version=guarded("version", engine.version, str),
         check=guarded("check", engine.check, object),
         holds=guarded("holds", engine.holds, Mapping),
@@ -242,14 +254,14 @@ class WatchedSession:
     """A session whose answers are checked."""
 
     def __init__(self, session: Session, place: _Place, scene: Scene) -> None:
-        self._session, self._place, self._scene = session, place, scene
+        self.session, self._place, self._scene = session, place, scene
         self._names = bodies(scene)
         self.step = session.step
 
     def facts(self) -> Facts:
         """Read the model as the engine holds it now."""
         with self._place.told("facts"):
-            facts = self._session.facts()
+            facts = self.session.facts()
         self._place.as_kind("facts", facts, Facts)
         if text := next(_facts(facts), "") or self._wrong(facts.start, 1):
             raise self._place.fault("facts", text)
@@ -258,18 +270,18 @@ class WatchedSession:
     def read(self) -> Poses:
         """Read the current state."""
         with self._place.told("read"):
-            poses = self._session.read()
+            poses = self.session.read()
         if text := self._wrong(poses, 1):
             raise self._place.fault("read", text)
         return poses
 
     def record(self, steps: int, every: int) -> Log:
         """Advance and log. An error in it ends the run, as for any engine."""
-        return self._logged("record", self._session.record, steps, every)
+        return self._logged("record", self.session.record, steps, every)
 
     def record_forces(self, steps: int, every: int) -> Log:
         """Advance and log with forces, as `record`."""
-        record = cast(ForceSession, self._session).record_forces
+        record = cast(ForceSession, self.session).record_forces
         log = self._logged("record_forces", record, steps, every)
         if text := wrong_forces(self._scene, log.forces, log.poses.time_s.size):
             raise self._place.fault("record_forces", text)
@@ -280,9 +292,12 @@ class WatchedSession:
             log = record(steps, every)
         except SystemExit as error:
             raise RuntimeError(f"it asked to end the process: {failure(error)}") from error
+        return self.checked(what, log, steps // every + 1)
+
+    def checked(self, what: str, log: Log, count: int) -> Log:
+        """Return a log of so many samples, or of fewer where it diverged; or refuse it."""
         self._place.as_kind(what, log, Log)
-        count = None if log.diverged else steps // every + 1
-        if text := self._wrong(log.poses, count):
+        if text := self._wrong(log.poses, None if log.diverged else count):
             raise self._place.fault(what, text)
         return log
 

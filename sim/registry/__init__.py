@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from importlib.util import find_spec
 from types import ModuleType
 from typing import Literal, cast
 
@@ -49,11 +50,17 @@ class BrokenEngineError(EngineError):
 @dataclass(frozen=True)
 class Fewer:
     """Length of a verification, and its scenes where none is named, of an engine whose steps take
-    long."""
+    long; ``batch_steps`` are the steps of a batch, None for ``turns`` of them."""
 
     steps_per_turn: float = 180.0
     turns: float = 1.0
+    batch_steps: int | None = None
     scenes: tuple[str, ...] = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever")
+
+    def lasts(self, *, in_batch: bool) -> str:
+        """Return the length of a run in words."""
+        short = in_batch and self.batch_steps
+        return f"{self.batch_steps} steps in a batch" if short else f"{self.turns:g} turn"
 
 
 @dataclass(frozen=True)
@@ -169,6 +176,9 @@ def offering(what: Capability) -> list[str]:
 
 def _loaded(name: str, part: str) -> object:
     own = declaration(name)
+    absent = EngineError(f"engine {name}: not installed; {install_command(name)}")
+    if part == "engine" and not all(map(find_spec, own.roots)):  # sooner than by its imports
+        raise absent
     try:
         module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)
     except Exception as error:
@@ -179,7 +189,7 @@ def _loaded(name: str, part: str) -> object:
         lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
         if (lacking or own.package).split(".")[0] not in own.roots:
             raise
-        raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
+        raise absent from None
     return getattr(module, part.upper())
 
 

@@ -4,10 +4,11 @@ import gc
 import math
 import statistics
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from numbers import Real
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -46,28 +47,47 @@ RUNAWAY = 1e6
 """Least angular velocity that counts as diverged, over the pace of the run (`drive.pace`)."""
 
 
+@dataclass(frozen=True)
+class Opened:
+    """A session at the start of a run, which is ``blank``, with the facts of its model; links that
+    spin faster than ``runaway`` [rad/s] are no mechanism any more."""
+
+    blank: Run
+    scene: Scene
+    session: Session
+    facts: Facts
+    runaway: float
+
+
 def chunks(steps: int, every: int) -> list[int]:
     """Return the lengths of the stretches, each a multiple of ``every`` except the last."""
     chunk = max(CHUNK_STEPS // every, 1) * every
     return [min(chunk, steps - done) for done in range(0, steps, chunk)]
 
 
-def recorded(
-    blank: Run, scene: Scene, session: Session, facts: Facts, runaway: float, *, rates: bool
-) -> Run:
+def recorded(opened: Opened, *, rates: bool) -> Run:
     """Record the run, chunk by chunk, until its end or divergence."""
-    every = blank.every
+    blank, session, every = opened.blank, opened.session, opened.blank.every
+    record = cast(ForceSession, session).record_forces if blank.with_forces else session.record
+    stretches = ((count, partial(record, count, every)) for count in chunks(blank.steps, every))
+    return followed(opened, stretches, rates=rates)
+
+
+def followed(
+    opened: Opened, stretches: Iterable[tuple[int, Callable[[], Log]]], *, rates: bool
+) -> Run:
+    """Return the run whose stretches are so many steps each, recorded as they are called."""
+    blank, scene, facts = opened.blank, opened.scene, opened.facts
     logs: list[Poses] = []
     acting: list[Forces] = []
-    record = cast(ForceSession, session).record_forces if blank.with_forces else session.record
-    opened: list[Mapping[str, Array]] = []
+    apart: list[Mapping[str, Array]] = []
     warnings: list[str] = []
     wall, done = 0.0, 0
     status: Status = "ok"
     reason = ""
-    for count in chunks(blank.steps, every):
+    for count, record in stretches:
         try:
-            log = record(count, every)
+            log = record()
         except BrokenContractError:
             raise
         except Exception as error:  # any error of an engine is a row of the result
@@ -76,9 +96,9 @@ def recorded(
         wall, done = wall + log.wall_s, done + count
         warnings += [w for w in log.warnings if w not in warnings]
         apart_m = gaps(scene, log.poses)
-        sound, fault = _sound(scene, log, apart_m, runaway)
+        sound, fault = _sound(scene, log, apart_m, opened.runaway)
         kept = slice(1 if logs else 0, sound)  # a stretch begins where the one before it ended
-        opened.append({name: gap[kept] for name, gap in apart_m.items()})
+        apart.append({name: gap[kept] for name, gap in apart_m.items()})
         logs.append(stretch(log.poses, kept))
         if log.forces is not None:
             acting.append(log.forces.stretch(kept))
@@ -86,7 +106,7 @@ def recorded(
             status, reason = "diverged", fault
             break
     if not logs:
-        logs, opened = [facts.start], [gaps(scene, facts.start)]
+        logs, apart = [facts.start], [gaps(scene, facts.start)]
     poses = joined(logs)
     forces = None
     if acting:
@@ -96,7 +116,7 @@ def recorded(
         status=status,
         reason=reason,
         motion=replace(motion(scene, poses, rates=rates), forces=forces),
-        gaps={name: np.concatenate([each[name] for each in opened]) for name in opened[0]},
+        gaps={name: np.concatenate([each[name] for each in apart]) for name in apart[0]},
         energy=energy(scene, poses) if blank.drive == "free" else None,
         velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,
         acceleration_time_s=poses.time_s + facts.acceleration_shift * blank.dt_s,
@@ -182,20 +202,25 @@ def run(
         leaves under 8 steps in a period (`sim.engine.drive.period`), or a model in the engine that
         is not the scene; a user's own engine that breaks its contract.
     """
+    told: Any = {"dt_s": dt_s, "steps": steps, "every": every, "drive": drive}
+    told |= {"settings": settings, "with_forces": with_forces}
+    opened = opened_run(scene, state, engine, profile, open_m, **told)
+    return recorded(opened, rates=rates) if isinstance(opened, Opened) else opened
+
+
+def opened_run(
+    scene: Scene,
+    state: State,
+    engine: str | Engine,
+    profile: str = "tuned",
+    open_m: float = 0.0,
+    **options: Any,
+) -> Opened | Run:
+    """Return the session of `run` at its start, looked at; or the run that it can not begin."""
     chosen = engine_of(engine) if isinstance(engine, str) else engine
-    told = setup(
-        scene,
-        state,
-        chosen,
-        profile,
-        dt_s=dt_s,
-        steps=steps,
-        every=every,
-        drive=drive,
-        settings=settings,
-        with_forces=with_forces,
-    )
-    check_steps(scene, period(scene, state, drive), dt_s, steps, every)
+    told = setup(scene, state, chosen, profile, **options)
+    dt_s, steps, drive = told.dt_s, told.steps, told.drive
+    check_steps(scene, period(scene, state, drive), dt_s, steps, told.every)
     blank = Run(**vars(told), status="ok", reason="", settings=told.asked)
     if scene.elastic:
         raise EngineError(
@@ -203,7 +228,7 @@ def run(
             "for it: `models.scene.cut_scenes.SegmentedScene(scene, count).rigid`"
         )
     try:
-        refuse_unknown_forces(scene, chosen, with_forces=with_forces, applying=applying)
+        refuse_unknown_forces(scene, chosen, with_forces=told.with_forces, applying=applying)
         session = chosen.open(scene, state, told.asked, dt_s, drive)
     except (SettingError, BrokenContractError):
         raise
@@ -214,8 +239,7 @@ def run(
     # Later loads may move a scene that almost rests: a radian in the whole run, at least.
     own = pace(scene, state, drive)
     runaway = RUNAWAY * max(own, 1.0 / (dt_s * steps)) if own else math.inf
-    held = replace(blank, settings=facts.settings)
-    return recorded(held, scene, session, facts, runaway, rates=rates)
+    return Opened(replace(blank, settings=facts.settings), scene, session, facts, runaway)
 
 
 def setup(

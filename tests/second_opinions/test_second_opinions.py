@@ -97,7 +97,7 @@ def disagreement(scene: Scene, closed: Motion, second: Motion) -> float:
 @pytest.mark.parametrize(
     ("name", "samples"),
     [
-        *((name, 3) for name in SIX),
+        *((name, 3) for name in SIX[2:]),  # the dyads of the first two are among theirs
         *(
             slowly(name, 73, reason="shapes of the same dyads, all over the turn")
             for name in shipped()
@@ -198,7 +198,7 @@ def test_a_planted_fault_makes_them_disagree(
 ) -> None:
     scene = load_scene(name)
     monkeypatch.setattr(owner, method, wrong)
-    assert disagreement(scene, *both(scene, swing_times(scene, 9))) > least
+    assert disagreement(scene, *both(scene, swing_times(scene, 4))) > least
 
 
 @pytest.mark.parametrize("chain", [WindowChain(1), WindowChain(3, 0.5, 2.0, 3.0, -0.7)])

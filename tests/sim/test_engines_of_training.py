@@ -2,6 +2,7 @@
 one solver leaves open."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -48,6 +49,20 @@ def test_a_solver_that_leaves_out_the_joints_of_loops_is_found_by_their_gap(prof
         assert found.verdict == "out"
         assert told[0].startswith("loop not enforced: pin C open by up to")
         assert "2 freedoms more" in told[0]
+
+
+@slow(COMPILES)
+@pytest.mark.parametrize(("name", "profile"), INSTALLED)
+def test_worlds_of_a_batch_move_as_alone(name: str, profile: str) -> None:
+    cell = replace(of_turns(FOURBAR, name, STEPS, profile=profile), converge=False)
+    found = check(replace(cell, steps=10, worlds=3))
+    if profile == "mujoco":
+        assert found.status == "unsupported"
+        assert "newton: crankcheck runs batches of Kamino and XPBD" in found.reason
+        return
+    assert [one.rule for one in found.failures] == []
+    assert found.batch.exact == (name != "mjx")
+    assert found.batch.difference <= found.batch.bound
 
 
 @slow(COMPILES)

@@ -1,10 +1,12 @@
 """A real store of a scene that was let go for a while, in two engines with two profiles."""
 
+import re
 from io import StringIO
 from pathlib import Path
 
 from rich.console import Console
 
+from models.files.reading import shipped
 from reports.requests.sweep import SweepRequest
 from tests.worlds.in_process import in_this_process
 
@@ -13,11 +15,14 @@ LASTS_S = 0.6
 
 
 def filled(folder: Path) -> Path:
-    """The store in a folder; the variants go from profile to profile, and not by engine."""
-    nowhere = Console(file=StringIO())
+    """The store in a folder; the variants go from profile to profile, and not by engine. The scene
+    lasts for a second, as figures integrate all of it."""
+    nowhere, scene = Console(file=StringIO()), folder.with_name(f"{SCENE}.toml")
+    text = shipped("free")[SCENE].read_text(encoding="utf-8")
+    scene.write_text(re.sub("^duration_s = .*", "duration_s = 1.0", text, flags=re.M))
     asked = SweepRequest(
         folder,
-        scenes=(SCENE,),
+        scenes=(str(scene),),
         engines=("mujoco", "pymunk"),
         profiles=("tuned", "as-shipped"),
         timing=False,

@@ -33,8 +33,11 @@ class Here(Generic[Answer]):
 @contextmanager
 def in_this_process() -> Iterator[pytest.MonkeyPatch]:
     """Cells are run and timed here, with one job: no child has to start, and each truth is found
-    once. Ends with the block, as other tests need children that may die."""
+    once; of times, which nobody compares, a few steps are enough. Ends with the block, as other
+    tests need children that may die."""
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)
+        patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)
         for name in STARTED_IN:
             patch.setattr(f"reports.{name}.Isolated", Here)
         yield patch

@@ -1,8 +1,8 @@
 """The rules, by ID. A verdict on a cell consists of their findings alone.
 
 CC101, 109, 115, 117, 119, 124 and 126 stand in `log`, CC110, 118 and 125 in `steps`, CC111, 112 and
-134 in `reference`, CC116 in `limits`, CC135 in `loops`; all others with their quantity, in
-`reports.quantities`.
+134 in `reference`, CC116 in `limits`, CC135 in `loops`, CC136 and 137 in `worlds`; all others with
+their quantity, in `reports.quantities`.
 """
 
 from collections.abc import Iterable
@@ -14,6 +14,7 @@ from reports.judge.rules.loops import LoopsHold
 from reports.judge.rules.reference import ReferenceCertain, TruthEnds, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
 from reports.judge.rules.steps import ErrorShrinks, ErrorSmooth, ForcesShrink
+from reports.judge.rules.worlds import AsAlone, OwnMotion
 
 _ALL: tuple[Rule, ...] = (
     log.StatusOk(),
@@ -32,11 +33,14 @@ _ALL: tuple[Rule, ...] = (
     log.NothingContradicts(),
     TruthEnds(),
     LoopsHold(),
+    OwnMotion(),
+    AsAlone(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108", "CC114", "CC116")
 ELASTIC = ("CC131", "CC132", "CC133")
 FORCES = ("CC120", "CC121", "CC122", "CC123")
+BATCHES = ("CC136", "CC137")
 TUNABLE = ("CC101", "CC110", *PLACES)
 """Failures due to an engine's settings; failures of rates and forces follow from them."""
 

@@ -7,6 +7,7 @@ from typing import Literal, Protocol
 
 from models.scene.driver import place_in_words
 from reports.compare.errors import Error, Errors
+from reports.compare.worlds import Batch
 from reports.judge.three_steps import Convergence
 from reports.judge.tolerance import Limit
 from reports.quantities import QUANTITIES
@@ -25,7 +26,8 @@ class Evidence:
     engine's (`sim.engine.Engine`); ``unasked`` are the differences of the run, and of the finer
     ones, from the request, None where there is no run. ``remedy`` is the result of other settings,
     where they were tried (`reports.verify.advised`). ``absent`` are required parts that a log
-    lacks, None where none are required.
+    lacks, None where none are required. ``batch`` has all worlds of a cell that is run as a batch;
+    all else is then of its worst world.
     """
 
     status: str
@@ -42,6 +44,7 @@ class Evidence:
     unasked: tuple[str, ...] | None = None
     remedy: str = ""
     absent: tuple[str, ...] | None = None
+    batch: Batch | None = None
 
 
 @dataclass(frozen=True)

@@ -88,7 +88,7 @@ def _bars(
     column = int(np.argmax(sizes))
     largest = float(sizes[column]) or 1.0
     for p, name in enumerate(question.names):
-        ends = [float(np.clip(each[p, column] / largest, -1.3, 1.3)) for each in (truth, own)]
+        ends = [float(np.clip(each[p, column] / largest, -1.15, 1.15)) for each in (truth, own)]
         yield name_text(name), ROW * (p + 0.5) + 4.0, BAR * ends[0], BAR * ends[1]
 
 

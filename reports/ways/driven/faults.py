@@ -1,12 +1,13 @@
 """Faults of driven runs: of their motion, and of the forces in them."""
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from functools import partial
 
 from analytic.cams.outline import outlined
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.selftest import engines, forces, requests
+from reports.selftest import engines, forces, requests, worlds
 from reports.selftest.fault import PROFILE, STEPS, FaultRuns, FaultSet
 from reports.selftest.higher_pairs import FACETS, FINER, PAIRS
 from reports.selftest.log_faults import CLOCK, MISSING, VALUES
@@ -23,6 +24,11 @@ def turn(scene: Scene, engine: str, steps: int, converge: bool, *, forces: bool 
 def contact(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
     """A cell of one turn of cams by contact, at finer steps."""
     return turn(outlined(scene, FACETS), engine, FINER * steps, converge)
+
+
+def batch(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
+    """A batch over one turn."""
+    return replace(turn(scene, engine, steps, converge=False), worlds=worlds.WORLDS)
 
 
 def words(scenes: Collection[str]) -> Sequence[str]:
@@ -55,10 +61,14 @@ FAULTS = FaultSet(
         *MISPLACED,
         *MISSING,
         *forces.FAULTS,
+        *worlds.FAULTS,
     ),
     {
-        "motion": FaultRuns(GROUPS, turn, words, SETTINGS, unseen=UNSEEN, also=("contact",)),
+        "motion": FaultRuns(
+            GROUPS, turn, words, SETTINGS, unseen=UNSEEN, also=("contact", "batch")
+        ),
         "contact": FaultRuns(CONTACT, contact, words, {}),
+        "batch": FaultRuns({"batch": f"another world of {worlds.WORLDS}"}, batch, words, {}),
         "forces": FaultRuns(
             {"force": "a right motion with wrong forces"},
             partial(turn, forces=True),

@@ -26,7 +26,7 @@ from tests.analytic.gradients.drawn import TRIAD, drawn
 from tests.analytic.test_bounds import shares
 from tests.worlds.tiers import few, slow, slowly
 
-FEW_KINDS = [("RR", "RR", "RR"), ("RR", "PR", "RP"), ("PR", "RP", "PP")]
+FEW_KINDS = [("RR", "PR", "RP"), ("PR", "RP", "PP")]
 few_kinds = pytest.mark.parametrize(
     "kinds", few(KINDS, FEW_KINDS, "legs of each kind are among the few"), ids="-".join
 )

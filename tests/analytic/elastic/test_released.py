@@ -47,9 +47,9 @@ FIVE = scene(FIVE_BAR + "[elastic.first]\nflexural_n_m2 = 2.0\n")
 )
 def test_both_methods_agree(mechanism: Scene) -> None:
     """Collocation without multipliers, an explicit method with them."""
-    time_s = np.linspace(0.0, 0.05, 41)
+    time_s = np.linspace(0.0, 0.02, 41)
     (link,) = mechanism.elastic
-    multibody, free = (f(mechanism, 0.05, Modes(1)) for f in (by_multipliers, release_elastic))
+    multibody, free = (f(mechanism, 0.02, Modes(1)) for f in (by_multipliers, release_elastic))
     assert apart(free.at(time_s), multibody.at(time_s), link) < 1e-8
 
 
@@ -79,13 +79,13 @@ def test_energy_is_the_work_of_the_pulse_less_what_damping_takes() -> None:
 
 def test_a_stiff_link_moves_as_a_rigid_one() -> None:
     """With an error of the first order in 1/E."""
-    time_s = np.linspace(0.0, 0.08, 6)
-    rigid = release(replace(PULSE, elastic={}, start=replace(PULSE.start, shape=None)), 0.08)
+    time_s = np.linspace(0.0, 0.04, 6)
+    rigid = release(replace(PULSE, elastic={}, start=replace(PULSE.start, shape=None)), 0.04)
     true = rigid.at(time_s, bound=False).links["crank"].theta
     off, flexural = [], PULSE.elastic["coupler"].flexural_n_m2
     for times in (1e2, 1e4):
         stiff = with_elastic(PULSE, flexural_n_m2=times * flexural)
-        motion = release_elastic(stiff, 0.08, Modes(1)).at(time_s)
+        motion = release_elastic(stiff, 0.04, Modes(1)).at(time_s)
         off.append(largest(motion.links["crank"].theta - true))
     assert off[1] < 0.02 * off[0] < 1e-4
 
@@ -182,7 +182,7 @@ def with_gains(scene: Scene, kp: float, kd: float) -> Scene:
 
 
 def test_under_control_multipliers_give_the_same_motion() -> None:
-    until_s = 0.05 * TURN_S
+    until_s = 0.02 * TURN_S
     time_s = np.linspace(0.0, until_s, 11)
     motion = control_elastic(SCENE, until_s, Modes(1)).at(time_s)
     other = by_multipliers(SCENE, until_s, Modes(1), acting=ControlledForces).at(time_s)
@@ -190,8 +190,8 @@ def test_under_control_multipliers_give_the_same_motion() -> None:
 
 
 def test_the_controllers_torque_is_all_work_there_is_and_none_when_let_go() -> None:
-    motion = control_elastic(SCENE, 0.2 * TURN_S, Modes(1))
-    time_s = np.linspace(0.0, 0.2 * TURN_S, 11)
+    motion = control_elastic(SCENE, 0.1 * TURN_S, Modes(1))
+    time_s = np.linspace(0.0, 0.1 * TURN_S, 11)
     own, energy = motion.at(time_s), motion.energy(time_s)
     crank = own.links["crank"]
     needed = forces(replace(SCENE, elastic={}), time_s, bound=False).torque
@@ -233,7 +233,7 @@ def test_nobody_takes_a_controlled_crank_for_one_that_is_told() -> None:
 
 @pytest.mark.parametrize("kp", [10.0, slowly(0.0, reason="one gain alone")])
 def test_a_controllers_torque_as_loads_does_the_same(kp: float) -> None:
-    scene, until_s = with_gains(replace(SCENE, gravity_m_s2=(0.0, -9.81)), kp, 0.1), 0.05
+    scene, until_s = with_gains(replace(SCENE, gravity_m_s2=(0.0, -9.81)), kp, 0.1), 0.02
     times = np.linspace(0.0, until_s, 50)
     loose = released_under_control(scene)
     assert loose.is_free

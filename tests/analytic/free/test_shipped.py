@@ -63,7 +63,7 @@ def steady(name: str, until_s: float) -> tuple[MachineMotion, Array]:
 @pytest.mark.parametrize(
     ("name", "until_s"),
     [
-        ("fourbar-swing", 0.12),
+        slowly("fourbar-swing", 0.12, reason="the multibody form is stepped by such a method"),
         slowly("fourbar-swing", 10.0, reason="errors that grow over many swings"),
         slowly("slider-crank-spring", 10.0, reason="errors that grow over many swings"),
     ],

@@ -161,6 +161,7 @@ def test_a_run_is_drawn_beside_the_reference_with_its_error_magnified(
     np.testing.assert_allclose(corners, exact + factor * (off - exact), atol=1e-7)
     size = np.ptp(np.vstack([exact, [[-0.1, -0.1], [0.3, 0.2]]]), axis=0).max()
     assert 0.02 < factor * np.linalg.norm(off - exact, axis=1).max() / size < 0.07
+    monkeypatch.setattr(gif.FigureCanvasAgg, "print_png", lambda *_, **__: None)
     told(view, tmp_path / "b.png", "--magnify", "7")
     assert labels[-1].endswith("error magnified 7 times")
 

@@ -282,8 +282,8 @@ def test_a_layout_is_kept_and_a_faulty_one_refused_in_a_line(store: Path, tmp_pa
     if "Liberation Serif" not in get_font_names():
         layout["font"] = "STIXGeneral"  # matplotlib's own
     plain = figures(store, tmp_path / "a", [SCENES[0]], ["convergence"], **layout)
-    bare = {"no_title": True, "no_notes": True}
-    figures(store, tmp_path / "b", [SCENES[0]], ["convergence"], **layout, **bare)
+    bare = {"no_title": True, "no_notes": True, "format": "svg"}
+    figures(store, tmp_path / "b", [SCENES[0]], ["convergence"], **layout | bare)
     assert "each as .svg and .pdf and .png" in plain
     name = f"convergence-{SCENES[0]}"
     svg, own = ((tmp_path / n / f"{name}.svg").read_bytes() for n in "ab")

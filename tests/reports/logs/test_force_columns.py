@@ -32,6 +32,13 @@ def frame() -> pd.DataFrame:
     return ran("mujoco")
 
 
+@pytest.fixture(scope="module")
+def bare(frame: pd.DataFrame) -> pd.DataFrame:
+    """The forces, and of the motion the angles alone: each column beside takes its time."""
+    angles = [name for name in frame if name.endswith("_theta_rad")]
+    return frame[["time_s", *angles, *filter(force_columns.shown_names(SCENE).__contains__, frame)]]
+
+
 def exact(scene: Scene, time_s: Array) -> pd.DataFrame:
     """The closed form with its forces, as we write it."""
     motion = solve(scene, time_s)
@@ -75,27 +82,27 @@ OTHERWISE = {
 }
 
 
-def test_other_names_and_units_mean_the_same(frame: pd.DataFrame) -> None:
-    other = frame.rename(columns={name: called for name, (called, _) in OTHERWISE.items()})
+def test_other_names_and_units_mean_the_same(bare: pd.DataFrame) -> None:
+    other = bare.rename(columns={name: called for name, (called, _) in OTHERWISE.items()})
     for called, factor in OTHERWISE.values():
         other[called] *= factor
     found = _judged(other)
     assert found.verdict == "within"
-    assert len(found.errors.rows) == len(_judged(frame).errors.rows)
+    assert len(found.errors.rows) == len(_judged(bare).errors.rows)
     for column, rule in (("C.normal (kN)", "CC121"), ("crank torque [N mm]", "CC123")):
         wrong = other.assign(**{column: -other[column]})
         assert rules(_judged(wrong)) - {"CC116"} == {rule}
 
 
-def test_what_is_not_in_the_log_is_not_judged_and_can_be_required(frame: pd.DataFrame) -> None:
-    less = frame.drop(columns=["torque_n_m"])
+def test_what_is_not_in_the_log_is_not_judged_and_can_be_required(bare: pd.DataFrame) -> None:
+    less = bare.drop(columns=["torque_n_m"])
     assert "torque of crank" in _judged(less).not_judged
     assert [each.rule for each in _judged(less, require="torque").failures] == ["CC119"]
 
 
-def test_instants_of_forces_of_their_own_are_taken(frame: pd.DataFrame) -> None:
-    late = frame.copy()
-    late["force_time_s"] = frame["time_s"] + 0.5 * STEP_S
+def test_instants_of_forces_of_their_own_are_taken(bare: pd.DataFrame) -> None:
+    late = bare.copy()
+    late["force_time_s"] = bare["time_s"] + 0.5 * STEP_S
     assert "CC120" in rules(_judged(late))
 
 

@@ -202,7 +202,8 @@ def test_the_loop_is_judged_whatever_carries_it_hangs_on_it_or_follows_it(
 ) -> None:
     edits, words = CARRIED[case]
     text = planted('gravity="0 0 0"', 'gravity="0 0 -9.81"', *edits)
-    account = read_text(tmp_path, text, converge=False, key="home" if "<key " in text else None)
+    key = "home" if "<key " in text else None
+    account = read_text(tmp_path, text, converge=False, turns=0.2, key=key)
     assert_four_bar(account.scene)
     assert words in "; ".join(account.notes)
     assert line(account, "as-written").verdict == "within"

@@ -81,13 +81,6 @@ def test_the_first_screen_has_verdict_settings_diagram_and_mechanism(
     assert page.locator("#advice tbody tr:visible").count() == 2
 
 
-def test_a_phone_has_the_first_screen_in_its_order(phone: Tab, small_page: Path) -> None:
-    found = phone.visit(small_page, *SECTIONS).page
-    tops = [box_of(found.locator(part))["y"] for part in ANSWER]
-    assert tops == sorted(tops)
-    assert tops[-1] < box_of(found.locator(".sentences"))["y"]
-
-
 def test_a_switch_of_the_legend_takes_a_trace_or_an_engine_out_and_back(page: Page) -> None:
     before = traces(page, "precision-chart")
     assert all(before.values())
@@ -291,7 +284,8 @@ def test_a_script_that_came_in_anyway_is_not_run(opened: Tab) -> None:
     opened.said.clear()
 
 
-def test_the_theme_is_the_systems_and_the_button_changes_it(opened: Tab, page: Page) -> None:
+def test_the_theme_is_the_systems_and_the_button_changes_it(wide: Tab, tiny_page: Path) -> None:
+    page = wide.open(tiny_page, "precision").page
     paper = "() => getComputedStyle(document.body).backgroundColor"
     ink = "() => document.getElementById('precision-chart')._fullLayout.font.color"
     light = [page.evaluate(each) for each in (paper, ink)]
@@ -308,13 +302,20 @@ def test_the_theme_is_the_systems_and_the_button_changes_it(opened: Tab, page: P
         button.click()
     page.emulate_media(color_scheme="light")
     assert page.evaluate(paper) == light[0]  # and forgotten when it is the system's again
-    opened.path = None  # no diagram is drawn
+    wide.path = None  # no diagram is drawn
 
 
 def test_hostile_text_does_nothing(wide: Tab, evil_page: Path) -> None:
     page = wide.open(evil_page, *SECTIONS).page
     page.evaluate(HOVER, 2)
     wide.hostile_text_does_nothing("#provenance")
+
+
+def test_a_phone_has_the_first_screen_in_its_order(phone: Tab, small_page: Path) -> None:
+    found = phone.visit(small_page, *SECTIONS).page
+    tops = [box_of(found.locator(part))["y"] for part in ANSWER]
+    assert tops == sorted(tops)
+    assert tops[-1] < box_of(found.locator(".sentences"))["y"]
 
 
 def test_nothing_runs_out_of_a_phone(phone: Tab, small_page: Path) -> None:

@@ -34,8 +34,9 @@ PROGRAM = """
 import contextlib, io, json, shlex, sys
 from crankcheck.__main__ import main
 from tests.worlds.in_process import in_this_process
+from tests.worlds.without_pdf import without_pdf
 told = {}
-with in_this_process():
+with in_this_process(), without_pdf():
     for name, text in json.loads(sys.argv[1]).items():
         out, sys.argv = io.StringIO(), ["crankcheck", *shlex.split(text)]
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):

@@ -23,8 +23,6 @@ def swept() -> Sweep:
         cells = {"engines": engines, "profiles": ["tuned"], "steps_per_turn": steps}
         asked = SweepRequest(folder, ["fourbar-lecture-1"], jobs=1, timing=timing, **cells)
         with in_this_process() as patch:
-            patch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
-            patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)
             # A part for each sweep, however busy the machine is.
             patch.setattr("reports.store.writer.EVERY_S", 600.0)
             return asked.run(nowhere, nowhere)

@@ -75,7 +75,7 @@ def same(found: Stored, wanted: Stored, *but: str) -> None:
             np.testing.assert_array_equal(found.trace(key)[series], values)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", cases())
 def test_what_can_be_read_is_reported_and_the_rest_is_named(
     name: str, store: Path, whole: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -353,11 +353,8 @@ def test_the_flywheel_of_a_yoke_without_loads_by_hand() -> None:
 
 
 def test_a_machine_with_its_flywheel_has_the_coefficient_let_go_or_driven() -> None:
-    """As a scene of its own, and tangents of the exact slopes say the same: no torque follows the
-    speed."""
+    """And tangents of the exact slopes say the same: no torque follows the speed."""
     found = wanted(load_scene("compressor"), 0.02)
-    again = cycle(with_flywheel(load_scene("compressor"), found.inertia_kg_m2))
-    assert again.delta == pytest.approx(0.02, rel=1e-11)
     (above, _), (_, below) = map(found.cycle.heights, found.slopes)
     steep, flat = found.slopes
     assert (above - below) / (steep - flat) == pytest.approx(found.inertia_kg_m2, rel=1e-11)

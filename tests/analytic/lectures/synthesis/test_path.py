@@ -18,7 +18,7 @@ from tests.worlds.tiers import at_length, slowly
 
 KINDS = list(itertools.product((True, False), (True, False)))
 NAMES = [f"{'timed' if t else 'free'}-{'closed' if c else 'open'}" for t, c in KINDS]
-FEW = 4
+FEW = 3
 
 
 def off_by_reference(fit: PathFit, task: PathTask) -> Array:

@@ -36,7 +36,12 @@ which have a defect, the nearest task is looked for, which takes a second."""
 @pytest.mark.parametrize(
     ("kind", "numbers"),
     [
-        *((kind, range(FIRST.get(kind, 0), FIRST.get(kind, 0) + 1)) for kind in TASKS),
+        *(
+            slowly(kind, range(1), reason="test_path.py finds paths by the reference")
+            if kind == "path"
+            else (kind, range(FIRST.get(kind, 0), FIRST.get(kind, 0) + 1))
+            for kind in TASKS
+        ),
         *(slowly(kind, range(100), reason="of forty, some are near a limit") for kind in TASKS),
     ],
     ids=lambda one: one if isinstance(one, str) else str(len(one)),
@@ -127,9 +132,9 @@ LEVER = [(pin, math.degrees(cmath.phase(0.4 - pin))) for pin in CRANK[:3]]
         (placed(*CIRCLE[:3], moving_m=PINS), "driven at"),
         (placed(*CIRCLE[:4]), "parallelogram"),
         (placed(*ON_A_LINE[:3], moving_m=PINS), "the body is a slider"),
-        (placed(*ON_A_LINE), "the body is a slider"),
+        slowly(placed(*ON_A_LINE), "the body is a slider", reason="five positions, as three"),
         (placed(*RODS[:3], moving_m=[[CRANK[0].real, CRANK[0].imag], ROD_END]), "slider B"),
-        (placed(*RODS), "slider"),
+        slowly(placed(*RODS), "slider", reason="five positions, as three"),
         (placed(*TRAMMEL, moving_m=TRAMMEL_PINS), "slider P"),
         (placed(*LEVER, fixed_m=[[0.0, 0.0], [0.4, 0.0]]), "slider O4"),
     ],

@@ -46,7 +46,8 @@ EVERY = {
     "far pole": made.far_pole,
 }
 SHEETS = [(name, paper) for paper in (A4, UPRIGHT) for name in EVERY]
-QUICK = [("Burmester's curves", A4), ("far pole", UPRIGHT)]
+QUICK = [("far pole", UPRIGHT)]
+"""The one with the most words."""
 
 
 @cache

@@ -49,6 +49,7 @@ from tests.reports.drawing.test_moving import unpacked
 from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines
 from tests.reports.page.hostile import embedded_in
 from tests.worlds.tiers import slow
+from tests.worlds.without_pdf import without_pdf
 
 
 def sheet_of(name: str, theta: float, paper: str = "A4", k: float | None = None) -> PolygonSheet:
@@ -77,17 +78,15 @@ def test_measured_lengths_times_scales_are_the_reference(name: str, theta: float
             assert nodes[point] == pytest.approx(exact, abs=0.01 * TENTH_MM * drawn.scale)
 
 
-def test_layers_stand_in_the_order_of_drawing() -> None:
-    svg = polygon_file(sheet_of("shaper", 1.2), ".svg")
+def test_layers_stand_in_the_order_of_drawing_and_the_same_sheet_has_the_same_bytes() -> None:
+    sheet = sheet_of("slider-crank-offset", 1.2, "A5")
+    svg = polygon_file(sheet, ".svg")
     layers = re.findall(r'inkscape:label="([^"]*)"', svg.decode())
-    groups = ["1-driver-crank", "2-RPR--lever--block-B", "3-RRP--rod--block-F"]
-    assert layers[:6] == ["frame", "scheme", "table", *(f"velocity-{group}" for group in groups)]
-
-
-def test_the_same_sheet_has_the_same_bytes() -> None:
-    sheet = sheet_of("fourbar-lecture-1", 1.2, "A5")
-    assert polygon_file(sheet, ".svg") == polygon_file(sheet, ".svg")
-    assert polygon_file(sheet, ".pdf").startswith(b"%PDF")
+    groups = ["1-driver-crank", "2-RRP--rod--block-C"]
+    assert layers[:5] == ["frame", "scheme", "table", *(f"velocity-{group}" for group in groups)]
+    assert polygon_file(sheet, ".svg") == svg
+    with without_pdf():
+        assert polygon_file(sheet, ".pdf").startswith(b"%PDF")
 
 
 @slow("24 sheets, and a second of frames: the layers that they show are tested as drawings")
@@ -271,7 +270,7 @@ def test_an_error_that_leaves_the_sheet_makes_the_scale_coarser() -> None:
 @pytest.mark.parametrize(
     ("name", "at_s"),
     [
-        ("fourbar-double-rocker-swing", 0.9),  # it has turned back at a limit, on another branch
+        ("fourbar-double-rocker-swing", 0.5),  # it has turned back at a limit, on another branch
         ("fourbar-double-rocker", 0.3),  # it swings by a law
         ("fourbar-elastic-controlled", 0.2),
     ],
