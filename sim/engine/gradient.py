@@ -25,7 +25,7 @@ STEP = 1e-4
 """Its step for what is exact to rounding, in units of a dimension: rounding leaves 1e-12."""
 SWEEP = tuple(10.0 ** (-0.5 * n) for n in range(2, 13))
 """Steps from which the best is chosen for the runs of an engine, in units of a dimension."""
-Opened = Callable[[Scene, State], Session]
+Opener = Callable[[Scene, State], Session]
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def placed(scene: Scene, poses: Mapping[str, BodyPose]) -> Array:
     return np.stack([np.column_stack([one.origin, one.theta]) for one in own], axis=1)
 
 
-def differences(opened: Opened, variation: Variation, steps: Sequence[int]) -> PoseGradient:
+def differences(opened: Opener, variation: Variation, steps: Sequence[int]) -> PoseGradient:
     """Differentiate whole runs by differences, each at the step of the sweep where it changes
     least from one to the next."""
     by = {}
@@ -101,7 +101,7 @@ def differences(opened: Opened, variation: Variation, steps: Sequence[int]) -> P
     return PoseGradient("differences of runs", places, by)
 
 
-def places_after(opened: Opened, scene: Scene, state: State, steps: Sequence[int]) -> Array:
+def places_after(opened: Opener, scene: Scene, state: State, steps: Sequence[int]) -> Array:
     """Return the places of all bodies after some steps, in rising order, (K, B, 3)."""
     session, done, found = opened(scene, state), 0, []
     for number in steps:
