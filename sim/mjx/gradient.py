@@ -14,7 +14,7 @@ from sim.compiling import compiling
 from sim.engine import Settings
 from sim.engine.gradient import PoseGradient, Variation, slope
 from sim.mjx.engine import MjxSession, filled, jax, jnp, mjx, rolled
-from sim.mujoco.gradient import Neighbourhood
+from sim.mujoco.gradient import SceneNeighbours
 from sim.mujoco.ported import IDLE
 
 METHOD = "forward mode"
@@ -25,7 +25,7 @@ def gradient(
 ) -> Iterator[PoseGradient]:
     """Differentiate the compiled loop by all dimensions at once. Raises EngineError."""
     session = MjxSession(variation.scene, variation.state, settings, dt_s, "prescribed")
-    opened, last = Neighbourhood.of(variation, {**IDLE, **settings}, dt_s), max(steps)
+    opened, last = SceneNeighbours.of(variation, {**IDLE, **settings}, dt_s), max(steps)
     with compiling(), session._as_numbers():
         given = [filled(rows(last + 1)) for rows in (session._controls, session._led)]
         leaves, kind = jax.tree_util.tree_flatten(session._there)
@@ -53,7 +53,7 @@ def gradient(
     yield opened.result(METHOD, q, by)
 
 
-def _slopes(opened: Neighbourhood, leaves: Sequence[Any]) -> dict[int, Array]:
+def _slopes(opened: SceneNeighbours, leaves: Sequence[Any]) -> dict[int, Array]:
     """Return the derivatives (P, ...) of the numbers of the model that depend on dimensions."""
     with jax.enable_x64(True):
         near = [

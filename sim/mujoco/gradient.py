@@ -32,14 +32,14 @@ from sim.mujoco.stepped import FULL
 
 
 @dataclass(frozen=True)
-class Neighbourhood:
+class SceneNeighbours:
     """A scene in MuJoCo at its start, and its neighbours by each dimension (`Variation`)."""
 
     here: MujocoSession
     near: Mapping[str, Sequence[MujocoSession]]
 
     @staticmethod
-    def of(variation: Variation, settings: Settings, dt_s: float) -> "Neighbourhood":
+    def of(variation: Variation, settings: Settings, dt_s: float) -> "SceneNeighbours":
         """Open all sessions. Raises EngineError."""
 
         def opened(scene: Scene, state: State) -> MujocoSession:
@@ -48,7 +48,7 @@ class Neighbourhood:
         every = {
             name: [opened(*one) for one in variation.neighbours(name)] for name in variation.names
         }
-        return Neighbourhood(opened(variation.scene, variation.state), every)
+        return SceneNeighbours(opened(variation.scene, variation.state), every)
 
     def start_slope(self, name: str) -> tuple[Array, Array]:
         """Return the derivatives of joint coordinates and rates at the start."""
@@ -71,7 +71,7 @@ class Neighbourhood:
 
 
 def transitions(
-    opened: Neighbourhood, names: Sequence[str], steps: Sequence[int], eps: float
+    opened: SceneNeighbours, names: Sequence[str], steps: Sequence[int], eps: float
 ) -> tuple[Array, Array]:
     """Return the joint coordinates after steps (K, n), and their derivatives by the start
     (K, n, P), from matrices differenced at ``eps``."""
@@ -102,7 +102,7 @@ def gradient(
     if own.integrator(settings, "prescribed") == "RK4":
         yield PoseGradient(method, refusal="it takes no RK4")
     elif names:
-        start = Neighbourhood.of(replace(variation, names=tuple(names)), settings, dt_s)
+        start = SceneNeighbours.of(replace(variation, names=tuple(names)), settings, dt_s)
         every = [transitions(start, names, steps, eps) for eps in SWEEP]
         best = steadiest([by for _, by in every])
         yield start.result(method, every[0][0], {n: best[:, :, i] for i, n in enumerate(names)})
