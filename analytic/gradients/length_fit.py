@@ -35,6 +35,10 @@ SMALL = 1e-3
 explain."""
 
 
+Differentiated = Callable[[Scene, Array, Sequence[str]], tuple[Motion, Mapping[str, Motion]]]
+"""A motion at coordinates of the driver, and its derivatives by dimensions, as `gradient_at`."""
+
+
 @dataclass(frozen=True)
 class LoggedSeries:
     """Readings (T,) [rad or m] of something that ``expected`` takes from a motion; angles count but
@@ -97,6 +101,7 @@ def fit_lengths(
     given: Mapping[str, float] | None = None,
     *,
     zeros: bool = False,
+    differentiate: Differentiated = gradient_at,
 ) -> LengthFit:
     """Fit dimensions of a scene to readings over its driver's coordinate (T,) [rad or m].
 
@@ -108,6 +113,8 @@ def fit_lengths(
         Dimensions of known value [m or rad].
     zeros : bool
         Fit the zero of each angle as well, that of the driver too.
+    differentiate : Differentiated
+        Source of the motion and its derivatives; what the readings determine is the reference's.
 
     Raises
     ------
@@ -129,6 +136,7 @@ def fit_lengths(
     angles = [one.name for one in readings if one.turns] if zeros else []
     problem = _Unknowns(scene, drive, tuple(readings), tuple(free), tuple(angles), zeros)
     problem, held, unit_length = _determined(problem)
+    problem = replace(problem, differentiate=differentiate)
     size = sum(one.values.size for one in readings)
     if not problem.names or size <= len(problem.names):
         raise CrankcheckError(
@@ -167,6 +175,7 @@ class _Unknowns:
     free: tuple[str, ...]
     angles: tuple[str, ...]
     zeros: bool
+    differentiate: Differentiated = gradient_at
 
     @property
     def names(self) -> list[str]:
@@ -194,7 +203,7 @@ class _Unknowns:
         Raises CrankcheckError for lengths with which the mechanism can not follow its driver."""
         ahead = [n for n in dimensions(self.scene) if n.startswith("driver.")] * self.zeros
         drive = self.drive - p[-1] if self.zeros else self.drive
-        motion, by = gradient_at(self.scene_at(p), drive, [*self.free, *ahead])
+        motion, by = self.differentiate(self.scene_at(p), drive, [*self.free, *ahead])
         residuals, slopes = [], []
         for one in self.readings:
             columns = [one.expected(by[name]) for name in self.free]

@@ -4,6 +4,7 @@ from sim.registry import Declaration, Fewer
 
 DECLARATION = Declaration(
     "mujoco.mjx",
+    ("gradient",),
     formulation="soft constraints",
     tried="3.17.",
     pip_name="mujoco-mjx",

@@ -70,7 +70,7 @@ class MjxSession(PortedSession):
             for first in range(0, max(steps, 1), MOST):
                 count = min(steps - first, MOST)
                 kept = slice(first, first + count + 1)
-                given = [_filled(each[..., kept, :]) for each in (controls, led)]
+                given = [filled(each[..., kept, :]) for each in (controls, led)]
                 self._now, found = (run or rolled)(
                     self._there, self._now, *given, self._crank, count
                 )
@@ -91,7 +91,7 @@ class MjxSession(PortedSession):
         return partial(all_._stepped, run=rolled_together)
 
 
-def _filled(rows: Array) -> Array:
+def filled(rows: Array) -> Array:
     """Return the rows with others after them, to the size of the compiled loop."""
     missing = MOST + 1 - rows.shape[-2]
     return np.concatenate([rows, np.zeros((*rows.shape[:-2], missing, rows.shape[-1]))], axis=-2)

@@ -4,7 +4,7 @@ from sim.registry import Declaration
 
 DECLARATION = Declaration(
     "mujoco",
-    ("snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"),
+    ("snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe", "gradient"),
     extra=False,
     formulation="soft constraints",
 )

@@ -161,6 +161,10 @@ class MujocoSession(SteppedModel):
     def _placed(self, q: Array, rate: Array, push: Array, lag_s: float) -> Mapping[str, BodyPose]:
         return body_poses(self._tree.limbs, q, rate, push, lag_s)
 
+    def bodies_at(self, q: Array) -> Mapping[str, BodyPose]:
+        """Return the bodies from joint coordinates (T, nq), at rest."""
+        return body_poses(self._tree.limbs, q, 0.0 * q, 0.0 * q)
+
     def _control_at(self, at: Array) -> Array:
         """Return the law's own speed or acceleration at the steps, and the sizes of the loads."""
         time_s = self._start_s + self._dt * at

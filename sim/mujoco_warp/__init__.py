@@ -4,6 +4,7 @@ from sim.registry import Declaration, Fewer
 
 DECLARATION = Declaration(
     "mujoco_warp",
+    ("gradient",),
     formulation="soft constraints",
     precision="single",
     tried="4.0.",

@@ -4,6 +4,7 @@ from sim.registry import Declaration, Fewer
 
 DECLARATION = Declaration(
     "newton",
+    ("gradient",),
     formulation="by solver",
     precision="single",
     tried="1.8.",

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Sequence
 from copy import copy
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -56,6 +56,8 @@ class NewtonSession(HeavyDriverSession):
     name = "newton"
     tangent = math.inf
     shift = -0.5
+    taped: ClassVar[bool] = False
+    """True if its steps are to be differentiated."""
 
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, driven_by: Drive
@@ -73,7 +75,7 @@ class NewtonSession(HeavyDriverSession):
         self.maximal = self.solver_name in MAXIMAL
         self.tree = planned(scene, state, delay_s=self.shift * dt_s)
         self.builder, self.first_rate = self._builder(), 0
-        self.model = self.builder.finalize(device="cpu")
+        self.model = self.builder.finalize(device="cpu", requires_grad=self.taped)
         self.from_value, self.end, self.driven = 0.0, (0.0, 0.0), (0, 0)
         if self.led:
             driven, _ = driven_freedom(scene, self.tree.limbs)
@@ -133,7 +135,7 @@ class NewtonSession(HeavyDriverSession):
         builder = newton.ModelBuilder()
         register(builder, self.solver_name)
         builder.gravity = wp.vec3(*self.scene.gravity_m_s2, 0.0)
-        self.index = {GROUND: -1}
+        self.index, self.ends = {GROUND: -1}, list[tuple[Array, Array]]()
         for limb in self.tree.limbs:
             self.index[limb.body] = self._link(builder, limb.body)
         self.joint = [self._joint(builder, limb) for limb in self.tree.limbs]
@@ -141,11 +143,8 @@ class NewtonSession(HeavyDriverSession):
             builder.add_articulation(roots)
         for closure in self.tree.closures:
             first, last = sorted(closure.bodies, key=[*self.index].index)
-            ends = (self.bodies.anchor(name, closure.point) for name in (first, last))
-            here, there = (transform(place, 0.0) for place in ends)
-            builder.add_joint_ball(
-                self.index[first], self.index[last], parent_xform=here, child_xform=there
-            )
+            ends = [row(self.bodies.anchor(name, closure.point), 0.0) for name in (first, last)]
+            builder.add_joint_ball(self.index[first], self.index[last], **self._ends(*ends))
         return builder
 
     def _link(self, builder: Any, name: str) -> int:
@@ -158,7 +157,7 @@ class NewtonSession(HeavyDriverSession):
             refuse_massless(self.scene, self.name, name, turns=turns)
         return int(
             builder.add_link(
-                xform=transform(frame.origin, frame.theta),
+                xform=wp.transform(*row(frame.origin, frame.theta)),
                 mass=mass,
                 inertia=wp.mat33(np.diag([inertia or mass] * 3)),
                 lock_inertia=True,
@@ -179,12 +178,10 @@ class NewtonSession(HeavyDriverSession):
         anchor = next((each.anchor for each in limb.freedoms if each.kind == "hinge"), (0.0, 0.0))
         ahead = turned(anchor, limb.angle_rad)
         place = limb.offset[0] + ahead[0], limb.offset[1] + ahead[1]
-        ends = {
-            "parent_xform": transform(
-                self.bodies.from_centre(limb.parent, place), limb.angle_rad + axis
-            ),
-            "child_xform": transform(self.bodies.from_centre(limb.body, anchor), axis),
-        }
+        ends = self._ends(
+            row(self.bodies.from_centre(limb.parent, place), limb.angle_rad + axis),
+            row(self.bodies.from_centre(limb.body, anchor), axis),
+        )
         flywheel = 0.0
         if limb.body == self.led and not self.maximal:
             flywheel = float(self.settings["flywheel_ratio"]) * pairs.inertia_scale(self.scene)
@@ -201,6 +198,11 @@ class NewtonSession(HeavyDriverSession):
         return int(
             builder.add_joint_d6(*between, linear_axes=[along], angular_axes=[about], **ends)
         )
+
+    def _ends(self, parent: Array, child: Array) -> dict[str, Any]:
+        """Keep the frames of a joint in its bodies, and return them for the builder."""
+        self.ends.append((parent, child))
+        return {"parent_xform": wp.transform(*parent), "child_xform": wp.transform(*child)}
 
     def _articulations(self) -> list[list[int]]:
         """Return the joints of each tree on the ground, the limbs being depth first."""
@@ -255,18 +257,21 @@ class NewtonSession(HeavyDriverSession):
 
     def _lead(self, place: float, speed: float) -> None:
         """Put the led body where its driver's coordinate is ``place``."""
+        self.led_by = place, speed
+        number, frame = self.index[str(self.led)], self.led_at(place, speed)
+        self.now.body_q[number] = row(frame.origin, frame.theta)
+        self.now.body_qd[number] = twist(frame)
+        at, rate = self.driven
+        self.now.joint_q[at], self.now.joint_qd[rate] = place - self.from_value, speed
+
+    def led_at(self, place: float, speed: float) -> Frame:
+        """Return the frame of the led body where its driver's coordinate is ``place``."""
         ahead, slider = place - self.from_value, self.scene.driver.slider
         (x, y), theta = self.led_frame.origin, self.led_frame.theta
         if slider is None:
-            frame = Frame((x, y), theta + ahead, (0.0, 0.0), speed)
-        else:
-            u, v = turned((1.0, 0.0), self.scene.sliders[slider].direction_rad)
-            frame = Frame((x + ahead * u, y + ahead * v), theta, (speed * u, speed * v), 0.0)
-        row = self.index[str(self.led)]
-        self.now.body_q[row] = tuple(transform(frame.origin, frame.theta))
-        self.now.body_qd[row] = twist(frame)
-        at, rate = self.driven
-        self.now.joint_q[at], self.now.joint_qd[rate] = ahead, speed
+            return Frame((x, y), theta + ahead, (0.0, 0.0), speed)
+        u, v = turned((1.0, 0.0), self.scene.sliders[slider].direction_rad)
+        return Frame((x + ahead * u, y + ahead * v), theta, (speed * u, speed * v), 0.0)
 
     def lead(self, frame: Frame, push: Push) -> None:
         raise NotImplementedError
@@ -313,10 +318,10 @@ class NewtonSession(HeavyDriverSession):
         return self.facts_of(VERSION, matter, centre, (float(x), float(y)), held)
 
 
-def transform(place: Point, angle: float) -> Any:
-    """Return a transform in the plane."""
-    turn = wp.quat(0.0, 0.0, math.sin(0.5 * angle), math.cos(0.5 * angle))
-    return wp.transform(wp.vec3(*place, 0.0), turn)
+def row(place: Point, angle: float) -> Array:
+    """Return the numbers of a transform in the plane: place and quaternion."""
+    half = 0.5 * angle
+    return np.array([*place, 0.0, 0.0, 0.0, math.sin(half), math.cos(half)])
 
 
 def twist(frame: Frame) -> tuple[float, ...]:

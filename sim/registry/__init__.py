@@ -31,7 +31,9 @@ ENGINES: Mapping[str, str] = {
 """Folders by name. A new engine needs its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
 """Default engine where one is enough."""
-Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"]
+Capability = Literal[
+    "snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe", "gradient"
+]
 """Optional parts of an engine."""
 Formulation = Literal[
     "soft constraints", "constraint impulses", "constraint equations", "by solver", "own"
@@ -69,10 +71,10 @@ class Declaration:
     ``extra`` is no part of a plain install of crankcheck, and runs only by name. The adapter is the
     value ``ENGINE`` of the file ``engine``; each capability in ``offers`` has a file of its name
     too, with a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`,
-    `Spoiler`, `Viewer`, `Reader` or `ForceRecipe`. An engine that runs ``apart`` may end its
-    process: it gets one of its own. ``tried`` starts every version that was compared with the
-    reference, ``wheels`` says for which systems there are any, where not for all. ``fewer`` is the
-    default verification of an engine whose steps take long.
+    `Spoiler`, `Viewer`, `Reader`, `ForceRecipe` or `Differentiated`. An engine that runs ``apart``
+    may end its process: it gets one of its own. ``tried`` starts every version that was compared
+    with the reference, ``wheels`` says for which systems there are any, where not for all.
+    ``fewer`` is the default verification of an engine whose steps take long.
     """
 
     package: str

@@ -90,11 +90,7 @@ def effects(
 ) -> Effects:
     """Return the effects of some dimensions (none: all) on a link, a slider or a point ("": the
     follower), at tolerances. Raises CrankcheckError as `gradient`, and for an unknown name."""
-    found = gradient_of(scene, period_of(scene), by or None)
-    of = of or _follower(scene)
-    names = (*scene.links, *scene.sliders, *found.motion.points)
-    if of not in names:
-        raise CrankcheckError(f"--of {of}: {suggestion(of, names, 'there are')}")
+    found, of = gradient_of(scene, period_of(scene), by or None), followed(scene, of)
     if not found.by:
         held = ", ".join(found.locked) or "nothing"
         raise CrankcheckError(f"{scene.name}: --by: {held} has no effect to show; name a dimension")
@@ -115,6 +111,17 @@ def _series(of: str, found: Gradient, name: str) -> Array:
     else:
         value, bound = np.hypot(*own.points[of].position.T), own.bound.points[of].position
     return np.where(np.isfinite(bound), value, np.nan)
+
+
+def followed(scene: Scene, of: str) -> str:
+    """Return a link, a slider or a point by its name, the follower for "". Raises CrankcheckError
+    for an unknown name."""
+    points = dict.fromkeys(point for own in scene.points_of.values() for point in own)
+    names = (*scene.links, *scene.sliders, *points)
+    of = of or _follower(scene)
+    if of not in names:
+        raise CrankcheckError(f"--of {of}: {suggestion(of, names, 'there are')}")
+    return of
 
 
 def _follower(scene: Scene) -> str:

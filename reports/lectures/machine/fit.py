@@ -20,6 +20,8 @@ from models.files.assemble import scene_text
 from models.files.reading import find_scene, load_scene
 from models.motion import Motion
 from models.scene import GROUND, Scene
+from reports.lectures.machine.engine_fit import FitEnd, fits
+from reports.lectures.machine.gradient_table import chosen
 from reports.logs.channel import Channel, OwnLog, Reading
 from reports.output.console import grid, say
 from reports.output.formats import json_text
@@ -49,6 +51,13 @@ class FitRequest:
     noise_deg: Annotated[
         float | None, option("Known noise of angles, one standard deviation.", "DEG")
     ] = None
+    engines: Annotated[
+        Sequence[str], option("Fit by an engine's derivatives as well; repeatable.", "--engine")
+    ] = ()
+    profiles: Annotated[
+        Sequence[str], option("Profile of the engines; repeatable (default tuned).", "--profile")
+    ] = ()
+    steps_per_turn: Annotated[float, option("Steps of engines in a turn.", min=24, max=1e6)] = 360.0
     map: Annotated[Path | None, option("TOML that says what columns mean.", "FILE")] = None
     json: Annotated[bool, "As JSON, not as tables."] = False
     written: Annotated[
@@ -66,12 +75,20 @@ class FitRequest:
         given = dict(_given(scene, text) for text in self.given)
         log = log_of(scene, self.log, self.map)
         drive, readings = driven_readings(log)
+        if self.engines and self.zeros:
+            raise CrankcheckError("--zeros: an engine's fit takes sensors with a known zero")
         found = fit_lengths(scene, drive, readings, self.by, given, zeros=self.zeros)
+        ends: list[FitEnd] = []
+        if self.engines:
+            choices = chosen(self.engines, self.profiles)
+            fitted = scene, drive, readings, self.by, given
+            ends = fits(*fitted, choices, self.steps_per_turn)
         checks = [_Check.of(found, number, self.noise_deg) for number in range(len(readings))]
         if self.json:
-            console.file.write(json_text(_document(found, checks, log)))
+            console.file.write(json_text({**_document(found, checks, log), **_by_source(ends)}))
         else:
             _show(console, found, checks, log)
+            _show_ends(console, ends)
         if self.written is not None:
             write(self.written, scene_text(found.scene))
             if not self.json:
@@ -218,3 +235,45 @@ def _show(console: Console, found: LengthFit, checks: Sequence[_Check], log: Own
             "No lengths of this mechanism and assembly give this log: try --zeros, a start nearer "
             "to it, another branch, another mechanism.",
         )
+
+
+def _by_source(ends: Sequence[FitEnd]) -> dict[str, object]:
+    """Return the ends of fits by engines as the data of a JSON file."""
+    own = ("source", "motions", "wall_s", "reason")
+    rows = [
+        {key: getattr(end, key) for key in own}
+        | {"dimensions": _rows(end.found) if end.found else []}
+        for end in ends
+    ]
+    return {"by_source": rows} if rows else {}
+
+
+def _show_ends(console: Console, ends: Sequence[FitEnd]) -> None:
+    """Print where the fits of the same rows end, as deviations from that of the reference."""
+    if not ends:
+        return
+    assert ends[0].found is not None
+    reference = {str(row["name"]): row for row in _rows(ends[0].found)}
+    heads = ["by", "motions:", "time s:", *(f"{name}:" for name in reference), "residual:"]
+    cells = []
+    for end in ends:
+        line = [end.source, str(end.motions), f"{end.wall_s:.3g}"]
+        if end.found is None:
+            cells.append([*line, *["none"] * (len(heads) - 3)])
+            continue
+        for name, row in reference.items():
+            own = next(each["fitted"] for each in _rows(end.found) if each["name"] == name)
+            off = readable(own - row["fitted"], 2)
+            line.append(f"{own:.7g} {row['unit']}" if end is ends[0] else f"{off} {row['unit']}")
+        rms = max(float(np.sqrt(np.mean(r**2))) for r in end.found.residuals)
+        cells.append([*line, readable(rms, 2)])
+    rows = ends[0].found.residuals[0].size
+    say(
+        console,
+        f"\nBy {rows} rows of a turn, and derivatives of the reference or of an engine; lengths of "
+        "engines against those by the reference; residuals in rad or m, rms\n",
+    )
+    console.print(grid(heads, cells, whole=("by",), wraps=True))
+    for end in ends:
+        if end.reason:
+            say(console, f"No lengths by {end.source}: {end.reason}")

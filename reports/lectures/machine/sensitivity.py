@@ -28,6 +28,7 @@ from reports.output.write import check_file, write
 from reports.requests.arguments import SceneLike, is_true, scene_of, told_at_the_call
 from reports.requests.options import SceneName, option, output_option
 from reports.requests.shown import Shown
+from reports.workers.progress import progress_bar
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -114,6 +115,19 @@ class SensitivityRequest:
     ] = ()
     tolerance_mm: Annotated[float, option("Tolerance of lengths.", "MM")] = 0.1
     tolerance_deg: Annotated[float, option("Tolerance of angles.", "DEG")] = 0.1
+    engines: Annotated[
+        Sequence[str], option("Compare an engine's derivatives; repeatable, or all.", "--engine")
+    ] = ()
+    profiles: Annotated[
+        Sequence[str], option("Profile of the engines; repeatable (default tuned).", "--profile")
+    ] = ()
+    steps: Annotated[str, option("Steps after which engines are compared.", "K,K")] = "1,10,100"
+    steps_per_turn: Annotated[float, option("Steps of engines in a turn.", min=24, max=1e6)] = 720.0
+    start_deg: Annotated[
+        float | None, option("Angle of the driver at the start of engines.", "DEG")
+    ] = None
+    order: Annotated[bool, "With engines, halve the step as well: the order of the error."] = False
+    runs: Annotated[bool, "With engines, difference whole runs beside their own method."] = False
     json: Annotated[bool, "As JSON, not as a table."] = False
     output: Annotated[
         Path | None,
@@ -121,11 +135,17 @@ class SensitivityRequest:
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
-        """Show or draw effects. Raises CrankcheckError for a faulty request."""
+        """Show or draw effects, or engines' derivatives; return 1 where one of these is out of
+        tolerance, else 0. Raises CrankcheckError for a faulty request."""
         for name, value in (("mm", self.tolerance_mm), ("deg", self.tolerance_deg)):
             if not 0.0 < value < math.inf:
                 raise CrankcheckError(f"--tolerance-{name}: found {value:g}; give one above 0")
-        check_file(self.output, "-o", (*PICTURES, *ENDINGS), inputs=[find_scene(self.scene)])
+        kinds = (".html",) if self.engines else (*PICTURES, *ENDINGS)
+        check_file(self.output, "-o", kinds, inputs=[find_scene(self.scene)])
+        if self.engines:
+            return self._compare(console, progress)
+        if self.profiles or self.start_deg is not None or self.order or self.runs:
+            raise CrankcheckError("--profile, --start-deg, --order, --runs: name an --engine")
         tolerances = 1e-3 * self.tolerance_mm, math.radians(self.tolerance_deg)
         found = effects(load_scene(self.scene), self.of, self.by, *tolerances)
         if self.output is not None:
@@ -140,6 +160,32 @@ class SensitivityRequest:
         else:
             show_effects(console, found)
         return 0
+
+    def _compare(self, console: Console, progress: Console) -> int:
+        """Show and write derivatives of engines beside those of the reference."""
+        from reports.lectures.machine import gradient_table as table  # with the engines
+        from reports.lectures.machine.engine_gradients import EngineGradient, engine_gradients
+        from reports.lectures.machine.gradient_page import gradient_page
+
+        scene, manner = load_scene(self.scene), (self.steps, self.steps_per_turn, self.start_deg)
+        question = table.asked(scene, self.of, self.by, *manner)
+        choices, found = table.chosen(self.engines, self.profiles), list[EngineGradient]()
+        with progress_bar(progress, "engines", len(choices)) as advance:
+            for one in choices:
+                own = engine_gradients(question, [one], with_order=self.order, with_runs=self.runs)
+                found += own
+                advance()
+        if self.output is not None:
+            write(self.output, gradient_page(question, found))
+        if self.json:
+            console.file.write(json_text(table.document(question, found)))
+        else:
+            table.show(console, question, found)
+            if self.output is not None:
+                say(console, f"{self.output}: gradients of {scene.name}")
+        if all(one.slopes is None for one in found):
+            raise CrankcheckError(f"{scene.name}: none of the engines has derivatives")
+        return int(not all(one.within for one in found))
 
 
 def _write(found: Effects, path: Path) -> None:

@@ -27,6 +27,7 @@ from sim.registry import engine, offering
 from sim.registry.offers import Knob, Work, rungs, search_space, snippet, viewer
 from sim.run.spoil import spoiler
 from tests.test_architecture import ROOT
+from tests.worlds.engines import HERE
 from tests.worlds.runs import ran, tuned
 
 
@@ -47,7 +48,7 @@ def test_a_capability_that_is_lacking_is_named_with_who_has_it(
 
 
 def test_what_is_declared_is_there_or_said_to_be_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in registry.ENGINES:
+    for name in HERE:
         for what in registry.declaration(name).offers:
             assert registry.capability(name, what)
     monkeypatch.setattr(registry, "ENGINES", {"fake": "tests.worlds.fake"})

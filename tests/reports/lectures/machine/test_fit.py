@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from analytic.gradients.dimensions import dimension
+from analytic.kinematics import solve_driven
 from models.files.reading import load_scene
 from tests.analytic.gradients.test_length_fit import REAL, logged
 from tests.worlds.command_line import crank_alone
@@ -65,3 +66,31 @@ def test_faulty_requests_end_with_2(log: Path, tmp_path: Path) -> None:
         answer = crank_alone("fit", "fourbar-lecture-1", *line)
         assert answer.exit_code == 2
         assert words in " ".join(answer.stderr.split())
+
+
+def test_an_engine_ends_where_the_reference_does(tmp_path: Path) -> None:
+    theta = np.linspace(0.3, 0.3 + 2.0 * np.pi, 73)
+    motion = solve_driven(REAL, theta, np.ones(1), np.zeros(1), bound=False)
+    columns = {"crank_rad": theta, "rocker_rad": motion.links["rocker"].theta}
+    log = tmp_path / "exact.csv"
+    pd.DataFrame(columns).to_csv(log, index=False)
+    line = ("--engine", "mujoco", "--profile", "as-shipped", "--by", "rocker", "--by", "coupler")
+    shown = crank_alone("fit", "fourbar-lecture-1", str(log), *line, "--steps-per-turn", "72")
+    assert shown.exit_code == 0
+    assert "mujoco as-shipped" in shown.stdout
+    document = json.loads(crank_alone(
+        "fit", "fourbar-lecture-1", str(log), *line, "--steps-per-turn", "72", "--json"
+    ).stdout)  # fmt: skip
+    reference, engine = document["by_source"]
+    for own, other in zip(reference["dimensions"], engine["dimensions"], strict=True):
+        assert own["fitted"] == pytest.approx(own["scene"], rel=1e-9)
+        assert 1e-8 < abs(other["fitted"] / own["fitted"] - 1.0) < 3e-2
+
+
+def test_an_engine_needs_a_driver_that_turns_one_way(tmp_path: Path) -> None:
+    theta = 1.0 + 0.5 * np.sin(np.linspace(0.0, 6.0, 60))
+    log = tmp_path / "swings.csv"
+    pd.DataFrame({"crank_rad": theta, "rocker_rad": theta}).to_csv(log, index=False)
+    answer = crank_alone("fit", "fourbar-lecture-1", str(log), "--engine", "mujoco")
+    assert answer.exit_code == 2
+    assert "a link as driver that turns one way" in " ".join(answer.stderr.split())
