@@ -108,12 +108,11 @@ SHORT = [
 
 
 def each_once(cases: Iterable[Case]) -> list[Case]:
-    """Of the faults of a driven motion each, in one engine; of what has forces, is in free motion,
-    bends or touches one of each rule, in each engine in which it can be."""
+    """One fault of each rule in each engine, and of a driven motion in each group of faults."""
     once: dict[object, Case] = {}
     for case in cases:
         fault = FAULTS[case[0]]
-        key = (fault.name,) if fault.kind == "motion" else (fault.kind, fault.rule, case[2])
+        key = (fault.kind, fault.group if fault.kind == "motion" else "", fault.rule, case[2])
         once.setdefault(key, case)
     return list(once.values())
 

@@ -27,7 +27,7 @@ from tests.worlds.tiers import at_length, slowly
 
 BY_CHANCE = ["wall_s", "logged_us_per_step"]
 TIMES = ["us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn"]
-MENDED = {"swapped", "twice", "cut timings", "timings file"}
+MENDED = {"swapped", "timings file"}
 Sweep = Callable[..., int]
 
 
@@ -285,7 +285,7 @@ def differs(found: Stored, wanted: Stored) -> bool:
     )
 
 
-@pytest.mark.parametrize("count", [20, slowly(120, reason=MORE), at_length(2000, reason=MORE)])
+@pytest.mark.parametrize("count", [12, slowly(120, reason=MORE), at_length(2000, reason=MORE)])
 def test_no_number_changes_without_a_word(count: int, whole: Path, tmp_path: Path) -> None:
     rng = random.Random(SEED)
     wanted = read_store(whole)

@@ -88,10 +88,10 @@ LIMIT = math.acos((0.3**2 + 0.4**2 - 0.45**2) / (2.0 * 0.3 * 0.4))
     ("task", "where"),
     [
         (FunctionTable(**LINEAR, **FORTH, points=LINE), "position 3"),
-        (FunctionTable(**LINEAR, **BACK, points=LINE), "position 1"),
+        slowly(FunctionTable(**LINEAR, **BACK, points=LINE), "position 1", reason="as forth"),
         (FunctionTable(**LINEAR, **FORTH, points=[0.0, 70.0, 130.0]), "an end of its range"),
         (carried(CHANGING, (1.5, 2.3, math.pi)), "position 3"),
-        (carried(CHANGING, (math.pi, 3.6, 4.2)), "position 1"),
+        slowly(carried(CHANGING, (math.pi, 3.6, 4.2)), "position 1", reason="as the last one"),
         (carried(LIMITED, (0.6, 1.0, LIMIT)), "position 3"),
     ],
 )
