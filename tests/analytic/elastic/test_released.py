@@ -53,6 +53,7 @@ def test_both_methods_agree(mechanism: Scene) -> None:
     assert apart(free.at(time_s), multibody.at(time_s), link) < 1e-8
 
 
+@slow("rare: vibration along a link, asked for; across both methods agree above")
 def test_what_rings_along_itself_is_followed_if_asked() -> None:
     """At 1e4 rad/s, by a hundredth of a micrometre; else it is left to a method that is stable."""
     by, until_s, time_s = Modes(0, 1), 0.0015, np.linspace(0.0, 0.0015, 21)

@@ -173,6 +173,7 @@ def test_tables_have_kinks_at_their_rows_and_in_all_their_periods() -> None:
     assert spun.edges_s == pytest.approx([0.02, 0.05, 0.07, 0.1])
 
 
+@slow("a second: a parallelogram goes through its flat positions as well")
 def test_a_chain_goes_through_its_flat_positions_and_is_smooth_within_a_passage() -> None:
     """At which its mobility is N + 1: twice down, and twice up, in one turn and a bit."""
     turning = ChainMotion(WindowChain(2))

@@ -75,6 +75,7 @@ NAME = "fourbar-elastic"
 BENDS = f"solve {NAME}"
 
 
+@slow("half a second; the linear theory is asked for in tests/reports/requests")
 def test_the_linear_theory_says_what_it_leaves_out() -> None:
     """ELASTIC: 1.28 % of the largest deflection at a frequency ratio of 10.5."""
     said = flat(told(f"{BENDS} --linear --modes 1 --steps-per-turn 2"))

@@ -345,6 +345,7 @@ def test_a_wrapped_crank_that_is_logged_too_seldom_is_told_to_be() -> None:
     assert (often.verdict, often.notes) == ("out", ())
 
 
+@slow("rare: a row a turn")
 def test_a_crank_logged_once_a_turn_is_not_said_to_stand_as_one_that_has_no_speed_is() -> None:
     columns = {"t": np.arange(20) * 0.2 * np.pi, "crank": np.full(20, 1.7)}
     one = judged(columns)

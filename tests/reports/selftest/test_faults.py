@@ -149,7 +149,10 @@ def test_every_rule_has_a_fault_that_it_must_catch_and_what_is_promised_its_size
 
 @pytest.mark.parametrize(
     ("kind", "engines"),
-    [("motion", ENGINES), ("free", ["mujoco"]), slowly("free", ["pymunk"], reason="as mujoco")],
+    [
+        ("motion", ENGINES),
+        *(slowly("free", [each], reason="0.8 s: as of driven motion") for each in ENGINES),
+    ],
 )
 def test_what_need_not_be_seen_is_not_seen(kind: str, engines: Sequence[str]) -> None:
     for one in passed_by(engines, kind):
@@ -157,6 +160,7 @@ def test_what_need_not_be_seen_is_not_seen(kind: str, engines: Sequence[str]) ->
         assert one.nothing == ()
 
 
+@slow("half a second: an engine whose joints are solved")
 def test_exact_places_are_no_fault_of_an_engine_that_solves_its_joints() -> None:
     exact = {"too-good-gaps", "too-good-crank", "too-good-finer", "halved-again"}
     assert {name for name in exact if FAULTS[name].possible("exudyn")} == set()

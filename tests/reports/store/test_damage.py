@@ -23,7 +23,7 @@ from reports.store.folder import write_part
 from reports.store.manifest import MANIFEST, notice
 from reports.store.reader import UNASKED, Stored, examine, read_store
 from tests.reports.store.damages import CASES, CUT, QUICK, cases, cut
-from tests.worlds.tiers import at_length, slowly
+from tests.worlds.tiers import at_length, slow, slowly
 
 BY_CHANCE = ["wall_s", "logged_us_per_step"]
 TIMES = ["us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn"]
@@ -189,6 +189,7 @@ def test_a_lost_manifest_is_remade_for_its_scenes(store: Path, swept: Sweep, who
     assert "another scene called fourbar-lecture-1" in refusal(swept, store)
 
 
+@slow("three sweeps over damage; one is mended above")
 def test_what_was_moved_before_is_not_overwritten_and_what_was_half_written_is_no_damage(
     store: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
 ) -> None:
