@@ -16,6 +16,7 @@ from models.files.reading import load_scene, parse_scene
 from models.motion import Motion
 from models.scene import Scene
 from tests.worlds.strategies import FORMS, Designed, examples, mechanisms
+from tests.worlds.tiers import few
 
 
 @pytest.mark.parametrize("bound", [False, True])
@@ -91,7 +92,10 @@ def test_rates_in_toggle_and_of_what_hangs_on_it_are_uncertain_and_silent() -> N
         solve_driven(scene, np.array([high + 0.1]), np.ones(1), np.zeros(1))
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form[:3] in ("RRP", "RPR")])
+OF_SLIDERS = [form for form in FORMS if form[:3] in ("RRP", "RPR")]
+
+
+@pytest.mark.parametrize("form", few(OF_SLIDERS, OF_SLIDERS[::3], "other ends of a slider"))
 def test_branch_of_a_slider_is_the_way_along_its_line(form: str) -> None:
     """Of the two assemblies, +1 is the one with the greater displacement, in every role."""
 

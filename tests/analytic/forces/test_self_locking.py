@@ -16,7 +16,7 @@ from models.files.reading import parse_scene
 from models.scene import Driver, Scene
 from models.scene.laws import Accelerating, Oscillating
 from models.scene.loads import ConstantFriction, CoulombFriction
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 STEEP = """
 name = "slider-crank-self-locking"
@@ -62,6 +62,7 @@ def test_a_slider_crank_locks_where_the_rod_leans_by_the_complement(mu: float) -
     assert found[0].words == f"locks itself from {ends[0]:.6g} to {ends[1]:.6g} deg"
 
 
+@slow("a second: limits are found above without them, and pins that rub solved below")
 def test_pins_that_rub_move_the_limit_by_a_tangents_lean() -> None:
     """The rod's force runs along a tangent of both friction circles, which leans from the rod by
     asin((c_B +- c_C)/l), and that counts in place of the rod's angle. Beyond 90 deg the rod turns

@@ -111,7 +111,9 @@ CHANGES = MOVES | {"faster": faster(50.0), "the other way": faster(-1.0)}
 LOADED = ("shaper", "tangent", "scotch-yoke")
 
 
-@pytest.mark.parametrize("name", shipped("forces"))
+@pytest.mark.parametrize(
+    "name", few(shipped("forces"), [*shipped("forces")][::3], "the same dyads")
+)
 @pytest.mark.parametrize("change", CHANGES)
 def test_forces_go_with_the_scene(name: str, change: str) -> None:
     scene = load_scene(name)

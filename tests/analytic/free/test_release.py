@@ -185,7 +185,7 @@ def unmoved(name: str, until_s: float) -> FreeMotion:
     ("name", "change", "until_s"),
     [
         *(("everything that acts", change, 0.1) for change in [*CHANGES][::2]),
-        ("limits", "mirrored", 0.45),
+        slowly("limits", "mirrored", 0.45, reason="half a second: through limits"),
         *(
             slowly(name, change, 0.8, reason="roundings that grow with time")
             for name in SCENES

@@ -116,7 +116,7 @@ def test_sensitivity_is_what_a_changed_start_or_speed_grows_by() -> None:
     assert by_bodies(spun, 0.5).sensitivity(end)[0] == pytest.approx(wanted, rel=0.05)
 
 
-@pytest.mark.parametrize("beside_rad", [0.0, 1e-17])
+@pytest.mark.parametrize("beside_rad", [slowly(0.0, reason="at the row itself"), 1e-17])
 def test_it_starts_at_a_row_of_a_table(beside_rad: float) -> None:
     """Or by rounding beside it, and so crosses the row as soon as it is in free motion."""
     gas = (
@@ -173,6 +173,7 @@ def test_tables_have_kinks_at_their_rows_and_in_all_their_periods() -> None:
     assert spun.edges_s == pytest.approx([0.02, 0.05, 0.07, 0.1])
 
 
+@slow("a second: a parallelogram goes through its flat positions as well")
 def test_a_chain_goes_through_its_flat_positions_and_is_smooth_within_a_passage() -> None:
     """At which its mobility is N + 1: twice down, and twice up, in one turn and a bit."""
     turning = ChainMotion(WindowChain(2))

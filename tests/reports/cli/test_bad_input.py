@@ -14,6 +14,7 @@ import pytest
 from models.files.reading import shipped
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds.fuzzing import Ended, attempt
+from tests.worlds.tiers import few, slowly
 
 MOST_CALLS, LESS = 8_000_000, 60_000_000
 """Calls of functions, some 5,000 for a misspelt key, and memory [byte] beyond that of such a one. A
@@ -167,7 +168,17 @@ def apart() -> Iterator[Isolated[Ended]]:
     process.close()
 
 
-@pytest.mark.parametrize("name", CASES)
+LIKE_ANOTHER = {
+    "solve 45001 values", "solve 800 keys", "sweep 800 keys", "sweep braces", "sweep 900 tables",
+    "sweep YAML 5001 keys", "sweep YAML brackets", "sweep YAML degrees", "links on a pin",
+    "1001 sliders", "study of repeats", *(name for name in CASES if name.startswith("tune ")),
+}  # fmt: skip
+"""Dear ones, beside a number, a nesting or a command of the same kind."""
+
+
+@pytest.mark.parametrize(
+    "name", few(CASES, CASES.keys() - LIKE_ANOTHER, "up to a second: as another of its kind")
+)
 def test_it_is_refused_at_once_with_one_message(name: str, apart: Isolated[Ended]) -> None:
     file, made, command, words = CASES[name]
     ended = apart.call(partial(attempt, name=file, counted=True), made, *command.split())
@@ -186,7 +197,10 @@ PRESS = shipped("forces")["toggle-press"].read_text(encoding="utf-8")
 RUNS = (
     "verify FILE --engine mujoco -o OUT",
     "sweep FILE --engine mujoco -o OUT",
-    "tune FILE --engine mujoco --target 1e-4 --budget 1",
+    slowly(
+        "tune FILE --engine mujoco --target 1e-4 --budget 1",
+        reason="a second, in which the search is imported: as by the others",
+    ),
 )
 
 

@@ -15,7 +15,7 @@ from reports.cli.application import broken_package
 from reports.output.console import forget_odd_sizes
 from tests.worlds.command import COMMAND, PYTHON, End, ends
 from tests.worlds.command_line import crank, flat, told
-from tests.worlds.tiers import few, slowly
+from tests.worlds.tiers import few, slow, slowly
 
 ROOT = Path(__file__).parents[3]
 SOLVE = "solve fourbar-lecture-1"
@@ -44,7 +44,9 @@ def cut_short(*_):
 
 ScenesRequest.run = cut_short
 """
-FILLED = (SOLVE, "export tangent", "scenes", "--help")
+FILLED = (SOLVE, "--help")
+"""What prints by itself, and what a package prints."""
+FILLED_AS_WELL = ("export tangent", "scenes")
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +57,9 @@ def ended(tmp_path_factory: pytest.TempPathFactory) -> dict[str, End]:
     (folder / "scene.toml").write_text(text, encoding="utf-8")
     full = {line: FULL.format(line=f"crankcheck {line}") for line in FILLED}
     return ends({**full, "ascii": ASCII, "swallowed": SWALLOWED}, folder)
+
+
+NO_SPACE = "standard output can not be written: No space left on device"
 
 
 def check_told(end: End, fault: str) -> None:
@@ -68,7 +73,16 @@ def check_told(end: End, fault: str) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
 @pytest.mark.parametrize("line", FILLED)
 def test_a_full_disk_behind_the_output_is_told(line: str, ended: dict[str, End]) -> None:
-    check_told(ended[line], "standard output can not be written: No space left on device")
+    check_told(ended[line], NO_SPACE)
+
+
+@slow("a process more: commands that print as solve does")
+@POSIX
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+def test_so_is_it_of_other_commands(tmp_path: Path) -> None:
+    full = {line: FULL.format(line=f"crankcheck {line}") for line in FILLED_AS_WELL}
+    for end in ends(full, tmp_path).values():
+        check_told(end, NO_SPACE)
 
 
 def test_a_closed_output_and_a_variable_that_breaks_a_package_are_told() -> None:

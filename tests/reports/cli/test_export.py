@@ -28,7 +28,7 @@ from sim.registry import Availability
 from sim.run import run
 from tests.worlds.command_line import crank, refused, told
 from tests.worlds.loading import massless
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 
 def exported(name: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
@@ -117,6 +117,7 @@ def test_view_without_a_screen_animates_it(tmp_path: Path, monkeypatch: pytest.M
     assert len(set(frames)) > 1
 
 
+@slow("a second: six frames; strips are drawn above")
 def test_a_strip_of_a_swinging_driver_shows_both_its_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     titles: list[str] = []
     monkeypatch.setattr(Axes, "set_title", lambda _, text, **__: titles.append(text))

@@ -41,6 +41,7 @@ def test_a_file_has_the_motion_the_energies_and_the_sensitivity(tmp_path: Path) 
     assert {"C_y_m", "potential_j", "work_j", "error_rad"} <= set(frame)
 
 
+@slow("a second; figures are written of elastic links below, pages in tests/reports/page")
 def test_figures_and_a_page_are_written(tmp_path: Path) -> None:
     page, folder = tmp_path / "page.html", tmp_path / "figures"
     with without_pdf():
@@ -55,7 +56,7 @@ def test_figures_and_a_page_are_written(tmp_path: Path) -> None:
     assert "Sensitivity" in text
 
 
-@slow("a second; pictures and films are drawn in test_export.py, pages of free motion above")
+@slow("a second; pictures and films are drawn in test_export.py, pages in tests/reports/page")
 def test_a_picture_is_told_of(tmp_path: Path) -> None:
     said = told("view fourbar-pulse -o", tmp_path / "pulse.png")
     assert "fourbar-pulse in free motion" in flat(said)
@@ -74,6 +75,7 @@ NAME = "fourbar-elastic"
 BENDS = f"solve {NAME}"
 
 
+@slow("half a second; the linear theory is asked for in tests/reports/requests")
 def test_the_linear_theory_says_what_it_leaves_out() -> None:
     """ELASTIC: 1.28 % of the largest deflection at a frequency ratio of 10.5."""
     said = flat(told(f"{BENDS} --linear --modes 1 --steps-per-turn 2"))
@@ -109,7 +111,7 @@ def test_a_file_has_both_motions_to_the_last_bit_and_figures_are_written(tmp_pat
     assert "magnified 50 times" in (folder / "positions.svg").read_text(encoding="utf-8")
 
 
-PULSE = "solve fourbar-elastic-pulse --modes 1 --duration 0.04"
+PULSE = "solve fourbar-elastic-pulse --modes 1 --duration 0.02"
 """The begin of the pulse, on one sine."""
 
 
@@ -122,6 +124,6 @@ def test_what_is_let_go_keeps_its_energy(tmp_path: Path) -> None:
     assert np.max(np.abs(energy - energy[0])) < 1e-9 * frame["kinetic_j"].max()
     apart = frame["crank_theta_rad"] - frame["crank_theta_rigid_rad"]
     assert 0.0 < np.max(np.abs(apart)) < 1e-2
-    said = flat(told(PULSE.replace("0.04", "0.02"), "--steps", 2))
+    said = flat(told(PULSE.replace("0.02", "0.01"), "--steps", 2))
     assert "driver crank, released at rest at 90 deg, for 5 s" in said
     assert "Uncertainty, from the next finer description: deflections " in said

@@ -15,6 +15,7 @@ from models.lectures.scheme_files import SCHEMES, shipped_schemes
 from models.lectures.touching import CONTACTS, shipped_contacts
 from reports.lectures.drawing.structure import all_assemblies
 from tests.worlds.command_line import crank, flat, refused, told
+from tests.worlds.tiers import slow
 
 
 @pytest.mark.parametrize("name", ["shaper", "fourbar-crossed"])
@@ -45,6 +46,7 @@ def test_json_holds_what_the_tables_say() -> None:
     assert json.loads(told("rotatability triad-platform --json"))["ends"] == []
 
 
+@slow("a second, in which all are worked out; one of each is told in test_told.py")
 def test_all_that_ships_is_listed() -> None:
     assert set(shipped_contacts()) <= set(flat(told("joint")).split())
     assert set(shipped_schemes()) <= set(flat(told("mobility")).split())

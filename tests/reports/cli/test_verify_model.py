@@ -18,7 +18,7 @@ from reports.requests.verify import VerifyRequest
 from reports.requests.verify_model import IN_FOLDER
 from tests.worlds.command_line import crank, flat, told
 from tests.worlds.own_models import SLIDER_CRANK
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 DRIVEN = "verify --mjcf engine.xml --drive motor --speed 10 --turns 1"
 ONCE = f"{DRIVEN} --no-convergence"
@@ -139,6 +139,7 @@ def test_what_can_not_be_a_diff_is_in_a_text_and_no_diff_is_left(text: str, why:
     assert recommended.startswith(f"Recommended:\n{why}: set in <option>: ")
 
 
+@slow("a second: two verifications; their cells are compared in tests/reports/diff")
 def test_two_such_folders_can_be_compared() -> None:
     told(f"{ONCE} -o old", code=1)
     Path("engine.xml").write_text(SLIDER_CRANK.replace("<option", '<option solver="PGS"'))

@@ -14,7 +14,7 @@ from reports.workers.isolated import Limits
 from sim.engine import Unreported
 from sim.registry import engine
 from tests.worlds.own_engines import fresh
-from tests.worlds.tiers import few, slowly
+from tests.worlds.tiers import few, slow, slowly
 from tests.worlds.wrong_engines import (
     FAULTS,
     forces_of_some,
@@ -47,6 +47,7 @@ def test_single_precision_that_is_declared_breaks_nothing() -> None:
         assert (ruling.breaches, ruling.scenes) == ((), FOURBAR), name
 
 
+@slow("0.7 s: six clauses, which are broken above")
 def test_forces_of_some_joints_break_nothing_where_the_others_are_declared() -> None:
     some = forces_of_some(Unreported(pins=frozenset("A"), torque=True))
     for name in ("EC81", "EC82", "EC83", "EC84", "EC85", "EC86"):

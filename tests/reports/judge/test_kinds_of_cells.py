@@ -238,6 +238,7 @@ def test_no_order_is_graded_where_a_start_grows_much(monkeypatch: pytest.MonkeyP
     assert check(cell(converge=True)).convergence is None
 
 
+@slow("0.6 s: rare, a driver that turns back at its limits")
 def test_limits_that_the_truth_passes_are_no_departure() -> None:
     """Through limits of the driver, which takes a longer truth: only there assemblies change."""
     scene = load_scene("fourbar-double-rocker-swing")

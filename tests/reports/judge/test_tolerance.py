@@ -20,7 +20,7 @@ from reports.judge.rules.limits import allowance
 from reports.judge.tolerance import check_names, limits, parse
 from sim.run import run
 from tests.worlds.facts import with_facts
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import few, slowly
 from tests.worlds.turns import of_turns
 
 ERRORS = Errors((), (), (), SceneFacts(curvature=1.0, conditioning=0.8, step_rad=0.01))
@@ -169,7 +169,7 @@ def share(scene: Scene, errors: Errors) -> float:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", few(LAWS, ["backwards", "oscillating"], "forth as backwards"))
 @pytest.mark.parametrize(
     ("steps_per_turn", "steps"),
     [

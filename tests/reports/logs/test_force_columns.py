@@ -17,6 +17,7 @@ from reports.describe.free_motion import motion_frame, run_frame
 from reports.logs import force_columns
 from reports.logs.columns import columns_of
 from reports.logs.meanings import understood
+from tests.worlds.tiers import slow
 
 SCENE = load_scene("slider-crank-offset")
 STEP_S = SCENE.driver.law.period_s / 360
@@ -62,6 +63,7 @@ def test_a_log_that_we_write_is_within_and_holds_every_force(frame: pd.DataFrame
     assert not [text for text in verdict.not_judged if "reaction" in text]
 
 
+@slow("0.7 s: logs of two engines more")
 def test_so_are_those_of_forces_of_steps_and_of_joints_that_are_solved_for() -> None:
     log = ran("pymunk")
     assert np.isnan(log["torque_n_m"][0])
@@ -221,6 +223,7 @@ def test_what_is_asked_of_forces_needs_them(frame: pd.DataFrame, asked: dict[str
     assert _judged(frame, **asked).verdict == "within"
 
 
+@slow("0.4 s: rare, a pin of three links; what lacks is told above")
 def test_reactions_of_a_pin_of_three_can_be_required() -> None:
     every = exact(load_scene(PRESS), np.linspace(0.0, 0.3, 10))
     asked = {"forces": True, "target": 1e-6, "require": "C.reaction"}

@@ -122,7 +122,15 @@ def apart() -> Iterator[Isolated[Ended]]:
     process.close()
 
 
-LONG = {"10 million rows", "a quote over 9 MB", "workbook, a cell far away", "workbook, laughs"}
+LONG = {
+    "null bytes behind a good beginning",
+    "a line of 9 MB",
+    "remarks of 300 kB",
+    "10 million rows",
+    "a quote over 9 MB",
+    "workbook, a cell far away",
+    "workbook, laughs",
+}
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from reports.judge.cell import Cell, check
 from reports.own_log.table import footer, no_cause_text
 from reports.page.log_page import log_page
 from reports.requests.run import Simulation
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 SWING = "fourbar-swing"
 TIME_S = np.linspace(0.0, 0.4, 201)
@@ -139,6 +139,7 @@ def test_a_log_that_begins_in_another_way_is_told_and_a_right_one_has_its_page()
     assert "free motion of fourbar-swing" in page
 
 
+@slow("0.4 s: rare, a driver that turns back at its limits")
 def test_where_the_driver_does_not_tell_the_position_no_geometry_is_judged() -> None:
     motion = truth("fourbar-double-rocker-swing")
     one = judged(angles(motion, "driver", "rocker"), "fourbar-double-rocker-swing")

@@ -18,7 +18,7 @@ from reports.logs.meanings import understood
 from tests.reports.own_log.conftest import Judge
 from tests.worlds.headers import FOREIGN, Header, header
 from tests.worlds.stranger_log import Dress
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 0.6, 60)
@@ -87,7 +87,14 @@ OTHER: list[tuple[dict[str, Array], str]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("columns", "said"), OTHER, ids=[", ".join(case) for case, _ in OTHER])
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        pytest.param(*case, marks=slow("other columns beside it") if number % 2 else ())
+        for number, case in enumerate(OTHER)
+    ],
+    ids=[", ".join(case) for case, _ in OTHER],
+)
 def test_a_column_beside_a_right_one_is_judged_or_refused_with_the_cure(
     columns: dict[str, Array], said: str
 ) -> None:

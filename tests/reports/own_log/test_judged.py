@@ -25,7 +25,7 @@ from reports.own_log import drives
 from reports.own_log.drives import moved
 from reports.own_log.judged import log_rows
 from reports.own_log.table import not_judged_lines
-from tests.worlds.tiers import slow, slowly
+from tests.worlds.tiers import few, slow, slowly
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 2.0, 601)
@@ -221,7 +221,7 @@ TABLES: dict[str, dict[str, object]] = {
 }
 
 
-@pytest.mark.parametrize("case", TABLES)
+@pytest.mark.parametrize("case", few(TABLES, [*TABLES][::2], "other tables"))
 def test_a_table_over_the_angle_of_the_crank_needs_no_times(case: str) -> None:
     columns = TABLES[case] | {
         "rocker_deg": np.degrees(ROCKER.theta), "C_x": C.position[:, 0],
@@ -318,8 +318,8 @@ def test_the_joint_that_opens_most_is_told() -> None:
     ("error", "words"),
     [
         (0.01 * np.sin(2.0 * CRANK.theta) ** 3 + 0.002 * WOBBLE, "repeats every turn"),
-        (WOBBLE, "has another shape"),
-        (0.05 * TIME_S**1.5 + WOBBLE / 3.0, "grows or falls linearly"),
+        slowly(WOBBLE, "has another shape", reason="what is neither"),
+        slowly(0.05 * TIME_S**1.5 + WOBBLE / 3.0, "grows or falls linearly", reason="0.4 s"),
     ],
 )
 def test_how_an_error_goes_on_is_told(error: Array, words: str) -> None:
@@ -345,6 +345,7 @@ def test_a_wrapped_crank_that_is_logged_too_seldom_is_told_to_be() -> None:
     assert (often.verdict, often.notes) == ("out", ())
 
 
+@slow("rare: a row a turn")
 def test_a_crank_logged_once_a_turn_is_not_said_to_stand_as_one_that_has_no_speed_is() -> None:
     columns = {"t": np.arange(20) * 0.2 * np.pi, "crank": np.full(20, 1.7)}
     one = judged(columns)

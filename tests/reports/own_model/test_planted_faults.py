@@ -29,6 +29,7 @@ from tests.worlds.own_models import (
     read_text,
     texts,
 )
+from tests.worlds.tiers import slowly
 
 
 def read(folder: Path, *edits: str) -> ModelAccount:
@@ -237,7 +238,11 @@ def test_the_integrator_stays_where_another_one_diverges() -> None:
 
 
 @pytest.mark.parametrize(
-    ("soft", "off"), [('solref="100 1" solimp="1e-4 1e-4 1"', False), ('solref="0.02 1"', True)]
+    ("soft", "off"),
+    [
+        slowly('solref="100 1" solimp="1e-4 1e-4 1"', False, reason="half a second: no gain"),
+        ('solref="0.02 1"', True),
+    ],
 )
 def test_contacts_are_off_only_where_that_gains(soft: str, off: bool) -> None:
     """A ball in the way of the rocker that pushes it, or gives way."""

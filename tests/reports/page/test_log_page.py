@@ -26,6 +26,7 @@ from tests.reports.page.conftest import Write
 from tests.reports.page.hostile import EVIL, Outline, embedded_in, stands_alone
 from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
 from tests.reports.page.tab import Tab
+from tests.worlds.tiers import few
 
 MOTION = motion_of()
 TIME_S = MOTION.time_s
@@ -165,7 +166,9 @@ def test_of_many_turns_the_first_the_last_and_the_worst_are_drawn() -> None:
     assert found[1].end_s == pytest.approx(motion.time_s[-1])
 
 
-@pytest.mark.parametrize("drive", ["scene", "fitted", "logged"])
+@pytest.mark.parametrize(
+    "drive", few(["scene", "fitted", "logged"], ["fitted"], "the same sections")
+)
 def test_every_drive_and_a_moved_guide_have_a_page(drive: str) -> None:
     scene = load_scene("shaper")
     motion = motion_of(scene)

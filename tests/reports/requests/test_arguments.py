@@ -56,7 +56,7 @@ def calls(ran: crankcheck.Simulation, folder: Path) -> Mapping[str, tuple[Callab
 
 @pytest.mark.parametrize(
     "odds",
-    [ODD[::6], slowly(ODD, reason="eight seconds for values of the same kinds")],
+    [ODD[::9], slowly(ODD, reason="eight seconds for values of the same kinds")],
 )
 def test_odd_arguments_are_errors_of_ours_told_at_the_call(
     odds: Sequence[object],

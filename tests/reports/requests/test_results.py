@@ -22,6 +22,7 @@ from tests.reports.page.hostile import Outline
 from tests.worlds.command_line import crank
 from tests.worlds.in_process import Here, in_this_process
 from tests.worlds.own_models import CROWDED, FACTS, SLIDER_CRANK, judged
+from tests.worlds.tiers import slow
 
 SCENE = "fourbar-lecture-1"
 
@@ -241,6 +242,7 @@ def test_a_verdict_of_a_model_is_lines_a_scene_and_tables(verdict: crankcheck.Mo
     assert "<option" not in page
 
 
+@slow("rare: a model that is driven at its rocker")
 def test_a_linkage_that_goes_through_no_whole_turn_is_drawn_as_far_as_it_went() -> None:
     """Driven at its rocker, which swings."""
     one = judged(CROWDED, "ankle", turns=0.02, dt_s=1e-4)

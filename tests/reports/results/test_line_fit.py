@@ -10,6 +10,7 @@ import pytest
 from reports.judge.three_steps import AT_ROUNDING
 from reports.results.floor_fit import ALIGNMENTS, added, opposed, reach, within
 from reports.results.line_fit import FitKind, fit_line
+from tests.worlds.tiers import slowly
 
 STEPS = 1e-2 / 2.0 ** np.arange(6)
 
@@ -142,7 +143,7 @@ ERRORS: dict[str, tuple[FitKind, np.ndarray]] = {
 
 
 @pytest.mark.parametrize("name", ERRORS)
-@pytest.mark.parametrize(("error", "dt"), [(1e-3, 1e3), (700.0, 300.0)])
+@pytest.mark.parametrize(("error", "dt"), [(1e-3, 1e3), slowly(700.0, 300.0, reason="other units")])
 def test_units_and_the_order_of_runs_do_not_matter(name: str, error: float, dt: float) -> None:
     (kind, errors), mixed = ERRORS[name], [3, 5, 0, 1, 4, 2]
     fit = fit_line(STEPS, errors)

@@ -40,6 +40,7 @@ from sim.engine import Run
 from sim.registry import engine
 from sim.run import run
 from sim.run.spoil import rounded, spoilt
+from tests.worlds.tiers import few
 
 STEPS = 360
 BOTH = pytest.mark.parametrize("engine_name", ["mujoco", "pymunk"])
@@ -132,7 +133,7 @@ def joules(done: Run) -> Array:
 
 
 @BOTH
-@pytest.mark.parametrize("name", INSIDE)
+@pytest.mark.parametrize("name", few(INSIDE, [*INSIDE][::3], "another fault of size 0"))
 def test_inside_an_engine_a_size_of_0_changes_no_bit(name: str, engine_name: str) -> None:
     none, sound = let_go(FAULTS[name].plant, engine_name, 0.0), let_go(nothing, engine_name)
     assert np.array_equal(joules(none), joules(sound))

@@ -21,6 +21,7 @@ from reports.selftest.trial import FAULTS, FaultTrial, Verdict, healthy
 from reports.selftest.unseen import UNSEEN
 from reports.workers.isolated import Lost
 from tests.worlds.command_line import crank, flat
+from tests.worlds.tiers import slow
 
 SPIKE = FAULTS["spike"]
 OTHER_RULE = replace(SPIKE, rule="CC102")
@@ -180,6 +181,7 @@ def test_files_hold_every_fault_in_every_place(tmp_path: Path) -> None:
     assert content["provenance"]["mujoco"].startswith("4")
 
 
+@slow("a second and a half: sound free runs; its faults are planted in test_faults.py")
 def test_faults_of_free_motion_tell_their_runs(tmp_path: Path) -> None:
     file = tmp_path / "free.json"
     result = selftest("energy-missing", engine="pymunk", json=file)

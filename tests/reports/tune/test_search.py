@@ -29,6 +29,7 @@ from reports.tune.search import (
 from reports.workers.signals import Stopped
 from sim.engine import Settings
 from sim.registry.offers import Knob, SearchSpace
+from tests.worlds.tiers import slow
 
 PROFILE = {"stiffness": 10.0, "idle": 3, "kind": "slow", "fixed": 7}
 SPACE = SearchSpace(
@@ -164,6 +165,7 @@ def test_a_profile_that_is_as_cheap_is_taken_as_it_is() -> None:
     assert plainer(space, first, best, costs) == (first, [])
 
 
+@slow("two seconds: three searches; what the clock ended is told in test_tune.py")
 def test_what_the_clock_ended_is_not_kept_and_tried_anew(path: Path) -> None:
     with study_in(path, {}) as study:
         once = search(study, plan(), Called(late=(0, 5, 13)))

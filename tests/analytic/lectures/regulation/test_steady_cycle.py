@@ -35,7 +35,7 @@ from models.scene.laws import Accelerating, ConstantSpeed
 from models.scene.moved import mirrored
 from models.scene.tabulated import Tabulated
 from tests.analytic.lectures.regulation.worked import shaft, yoke
-from tests.worlds.tiers import slow, slowly
+from tests.worlds.tiers import few, slow, slowly
 
 PULL = {"pull": (Sine(20.0, math.tau), "angle")}
 """40 J of surplus."""
@@ -92,7 +92,7 @@ OF_LINES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", OF_LINES)
+@pytest.mark.parametrize("name", few(OF_LINES, ["jumps"], "half a second: extremes within a line"))
 def test_surplus_and_flywheel_of_torque_lines_are_exact(name: str) -> None:
     """Work is a parabola in each line: its extremes are in rows, and where M + D = 0. At 10 rad/s
     J = surplus / (delta 10^2), on a shaft of 2 kg m^2."""
@@ -241,7 +241,7 @@ def test_rows_of_tables_are_borders_of_cells() -> None:
     assert found.drive_n_m == pytest.approx(-mean, rel=2e-9)
 
 
-@pytest.mark.parametrize("name", shipped("forces"))
+@pytest.mark.parametrize("name", few(shipped("forces"), [*shipped("forces")][::3], "as the others"))
 def test_shipped_machines_close_their_balance(name: str) -> None:
     scene = replace(load_scene(name), friction={})
     found = cycle(scene, 1e4)

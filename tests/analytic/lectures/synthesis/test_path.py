@@ -62,6 +62,7 @@ def test_most_are_found_again(timed: bool, closed: bool, least: float, count: in
     assert near >= least * count
 
 
+@slow("half a second; a timed path is found again above")
 def test_timing_is_kept() -> None:
     task = random_path(4, 12, timed=True, closed=True)
     for fit in generate(task, starts=FEW).fits:

@@ -88,10 +88,10 @@ LIMIT = math.acos((0.3**2 + 0.4**2 - 0.45**2) / (2.0 * 0.3 * 0.4))
     ("task", "where"),
     [
         (FunctionTable(**LINEAR, **FORTH, points=LINE), "position 3"),
-        (FunctionTable(**LINEAR, **BACK, points=LINE), "position 1"),
+        slowly(FunctionTable(**LINEAR, **BACK, points=LINE), "position 1", reason="as forth"),
         (FunctionTable(**LINEAR, **FORTH, points=[0.0, 70.0, 130.0]), "an end of its range"),
         (carried(CHANGING, (1.5, 2.3, math.pi)), "position 3"),
-        (carried(CHANGING, (math.pi, 3.6, 4.2)), "position 1"),
+        slowly(carried(CHANGING, (math.pi, 3.6, 4.2)), "position 1", reason="as the last one"),
         (carried(LIMITED, (0.6, 1.0, LIMIT)), "position 3"),
     ],
 )
@@ -134,8 +134,8 @@ LEVER = [(pin, math.degrees(cmath.phase(0.4 - pin))) for pin in CRANK[:3]]
         (placed(*TURNED[:2], moving_m=[[0.3, 0.1], [0.5, 0.1]]), "the body is a crank"),
         slowly(HALF, "the body is a crank", reason="of 72 with a defect"),
         (placed(*ROUNDED), "positions met to"),
-        slowly(placed(*CIRCLE[:3], moving_m=PINS), "driven at", reason="three, as four"),
-        (placed(*CIRCLE[:4]), "parallelogram"),
+        slowly(placed(*CIRCLE[:3], moving_m=PINS), "driven at", reason="three positions"),
+        slowly(placed(*CIRCLE[:4]), "parallelogram", reason="its engines do so in test_proof.py"),
         (placed(*ON_A_LINE[:3], moving_m=PINS), "the body is a slider"),
         slowly(placed(*ON_A_LINE), "the body is a slider", reason="five positions, as three"),
         (placed(*RODS[:3], moving_m=[[CRANK[0].real, CRANK[0].imag], ROD_END]), "slider B"),

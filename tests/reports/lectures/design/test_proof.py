@@ -20,7 +20,7 @@ from tests.analytic.lectures.synthesis.random_tasks import TASKS, proofs
 from tests.worlds.tiers import slow, slowly
 
 QUICK = ("three-positions", "by-angle", "isosceles", "slotted-lever", "whitworth",
-         "power-3-points", "evans", "peaucellier")  # fmt: skip
+         "power-4-points", "evans", "peaucellier")  # fmt: skip
 EVERY = [
     (kind, name) if name in QUICK else slowly(kind, name, reason="one more of a kind")
     for kind, names in shipped_tasks().items()

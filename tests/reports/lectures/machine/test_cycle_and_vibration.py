@@ -17,7 +17,7 @@ from models.files.reading import find_scene, load_scene, read_text
 from models.scene.characteristics import Constant, Polynomial, Sine
 from tests.analytic.lectures.regulation.worked import shaft, yoke
 from tests.worlds.command_line import crank, refused
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 from tests.worlds.without_pdf import without_pdf
 
 
@@ -120,7 +120,10 @@ def test_a_page_is_written() -> None:
     body = text.partition("<main")[2].partition("<script")[0]
     assert "Wittenbauer" in body
     assert "nan" not in body.lower().split()
-    # A shaft of constant moment of inertia has no energy-mass diagram.
+
+
+@slow("0.7 s: a page with fewer pictures, and figures, as of the yoke")
+def test_a_shaft_of_constant_moment_of_inertia_has_no_energy_mass_diagram() -> None:
     told("cycle shaft.toml -o s.html --figures two")
     assert pictures("s.html") == 2
     names = {"speed.svg", "speed.pdf", "torques.svg", "torques.pdf"}

@@ -48,7 +48,7 @@ from reports.requests.any_log import log_of_motion
 from tests.reports.drawing.test_moving import unpacked
 from tests.reports.lectures.drawing.sheets.measured import TENTH_MM, drawn_lines
 from tests.reports.page.hostile import embedded_in
-from tests.worlds.tiers import slow
+from tests.worlds.tiers import slow, slowly
 from tests.worlds.without_pdf import without_pdf
 
 
@@ -57,7 +57,12 @@ def sheet_of(name: str, theta: float, paper: str = "A4", k: float | None = None)
 
 
 @pytest.mark.parametrize(
-    ("name", "theta"), [("slider-crank-offset", 2.9), ("shaper", 5.5), ("sixbar-stephenson", 6.8)]
+    ("name", "theta"),
+    [
+        ("slider-crank-offset", 2.9),
+        slowly("shaper", 5.5, reason="as the others"),
+        slowly("sixbar-stephenson", 6.8, reason="as the others"),
+    ],
 )
 def test_measured_lengths_times_scales_are_the_reference(name: str, theta: float) -> None:
     """Every vector of both polygons to a tenth of a millimetre on paper."""
