@@ -42,10 +42,10 @@ def asked(
 
 def started(scene: Scene, angle_deg: float) -> Scene:
     """Return the scene with its driver at an angle at the start. Raises CrankcheckError."""
-    if scene.driver.slider is not None or not math.isfinite(angle_deg):
-        raise CrankcheckError(
-            f"--start-deg {angle_deg:g}: {scene.name} is driven by no angle of it"
-        )
+    if scene.driver.slider is not None:
+        raise CrankcheckError(f"--start-deg: {scene.name} is driven at a slider; leave it out")
+    if not math.isfinite(angle_deg):
+        raise CrankcheckError(f"--start-deg: found {angle_deg:g}; give an angle in degrees")
     law = scene.driver.law
     ahead = math.radians(angle_deg) - float(law.at(np.zeros(1))[0][0])
     return replace(scene, driver=replace(scene.driver, law=law.turned(ahead)))

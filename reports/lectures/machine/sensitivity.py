@@ -131,7 +131,10 @@ class SensitivityRequest:
     json: Annotated[bool, "As JSON, not as a table."] = False
     output: Annotated[
         Path | None,
-        output_option("Draw the curves (.svg, .pdf, .png), or write .csv, .parquet or .xlsx."),
+        output_option(
+            "Draw the curves (.svg, .pdf, .png), or write .csv, .parquet or .xlsx; with engines, a "
+            "page (.html)."
+        ),
     ] = None
 
     def run(self, console: Console, progress: Console) -> int:
