@@ -50,6 +50,7 @@ def at_steps(errors: tuple[float, ...]) -> LineFit:
     return fit_line([PERIOD / n for n in STEPS], errors)
 
 
+@slow("half a second of runs; floors of lines that were measured are found above")
 def test_mujoco_as_shipped_has_a_floor_on_the_lecture_fourbar() -> None:
     scene = load_scene("fourbar-lecture-1")
     steps_s = [scene.driver.law.period_s / n for n in STEPS]
