@@ -252,7 +252,9 @@ def test_windows_end_at_kinks_with_smooth_motion_in_between_and_are_halved_if_to
 @pytest.mark.parametrize(
     ("scene", "start"),
     [
-        (fourbar(axial_n=3e4, damping_s=2e-4), "straight"),
+        slowly(
+            fourbar(axial_n=3e4, damping_s=2e-4), "straight", reason="0.4 s: from another start"
+        ),
         (with_elastic(load_scene("slider-crank-elastic"), damping_s=1e-3), "periodic"),
     ],
 )

@@ -8,7 +8,7 @@ import pytest
 
 from tests.worlds.command import COMMAND, PYTHON, ends, script
 from tests.worlds.programs import Start
-from tests.worlds.tiers import few, slow
+from tests.worlds.tiers import few, slow, slowly
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
 
@@ -139,7 +139,8 @@ def started(module: str, number: int, program: str, start: Start) -> tuple[int, 
 @pytest.mark.parametrize(
     ("module", "program"),
     [
-        *((each, COMMAND) for each in ("reports.cli", "reports.cli.application", "numpy")),
+        *((each, COMMAND) for each in ("reports.cli", "reports.cli.application")),
+        slowly("numpy", COMMAND, reason="half a second: its workers are interrupted above"),
         ("reports.cli", "-m"),
     ],
     ids=["before the command line", "in it", "after it", "as a module"],

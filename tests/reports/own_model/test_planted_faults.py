@@ -29,7 +29,7 @@ from tests.worlds.own_models import (
     read_text,
     texts,
 )
-from tests.worlds.tiers import slowly
+from tests.worlds.tiers import slow, slowly
 
 
 def read(folder: Path, *edits: str) -> ModelAccount:
@@ -402,6 +402,7 @@ def test_factors_and_shares_of_a_limit_in_words() -> None:
     assert told == ["0 of its limit", "137 times its limit"]
 
 
+@slow("0.4 s: a long course")
 def test_a_long_course_keeps_its_largest_error(
     rubbing: JudgedModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -50,6 +50,7 @@ def at_steps(errors: tuple[float, ...]) -> LineFit:
     return fit_line([PERIOD / n for n in STEPS], errors)
 
 
+@slow("half a second of runs; floors of lines that were measured are found below")
 def test_mujoco_as_shipped_has_a_floor_on_the_lecture_fourbar() -> None:
     scene = load_scene("fourbar-lecture-1")
     steps_s = [scene.driver.law.period_s / n for n in STEPS]
@@ -84,7 +85,7 @@ def test_a_floor_of_mujoco_as_shipped_is_what_much_finer_runs_converge_to(scene:
     assert abs(found.floor - much_finer) < 3.0 * found.floor_error
 
 
-@slow("0.7 s: a share of twelve fits; a floor's uncertainty is held below for some")
+@slow("0.7 s: a share of twelve fits; a floor's uncertainty is held above for some")
 def test_stated_uncertainties_of_floors_hold_two_times_in_three() -> None:
     fits = [(at_steps(errors), finer) for errors, finer in MUJOCO_AS_SHIPPED.values()]
     held = sum(abs(fit.floor - finer) <= fit.floor_error for fit, finer in fits)

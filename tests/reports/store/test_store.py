@@ -256,7 +256,7 @@ def test_mending_that_is_killed_loses_no_cell(
     same(read_store(store), read_store(whole))
 
 
-@pytest.mark.parametrize("step", range(2))
+@pytest.mark.parametrize("step", few(range(2), {1}, "before the first"))
 def test_a_sweep_killed_while_it_takes_out_a_cell_loses_no_other(
     step: int, store: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

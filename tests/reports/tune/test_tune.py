@@ -71,6 +71,7 @@ def test_what_is_found_reaches_the_target_no_dearer_than_tuned(whole: tuple[int,
     assert mujoco_disturbance(pasted).moving < 1e-9
 
 
+@slow("0.6 s: what is kept of another target is refused in test_search.py")
 @pytest.mark.parametrize(
     ("name", "now", "words"),
     [

@@ -206,6 +206,7 @@ def test_a_transmission_angle_is_kept_at_the_cost_of_the_distance(timed: bool) -
     assert strict[0].rms_m < 0.5 * task.radius_m
 
 
+@slow("0.4 s: rare, a circle")
 def test_what_a_crank_does_alone_is_refused_with_the_reason() -> None:
     angles = math.tau * np.arange(12) / 12
     points = tuple(np.exp(1j * angles).tolist())
