@@ -7,6 +7,7 @@ and of its start; from any other they follow by differences of whole runs.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -102,13 +103,13 @@ def differences(opened: Opener, variation: Variation, steps: Sequence[int]) -> P
 
 
 def places_after(opened: Opener, scene: Scene, state: State, steps: Sequence[int]) -> Array:
-    """Return the places of all bodies after some steps, in rising order, (K, B, 3)."""
-    session, done, found = opened(scene, state), 0, []
-    for number in steps:
-        session.step(number - done)
-        found.append(placed(scene, session.read().bodies))
-        done = number
-    return np.concatenate(found)
+    """Return the places of all bodies after some steps, (K, B, 3), not numbers after the end of a
+    run that ends before."""
+    every = math.gcd(*steps)
+    found = placed(scene, opened(scene, state).record(max(steps), every).poses.bodies)
+    whole = np.full((max(steps) // every + 1, *found.shape[1:]), np.nan)
+    whole[: len(found)] = found
+    return whole[np.array(steps) // every]
 
 
 def steadiest(found: Sequence[Array]) -> Array:

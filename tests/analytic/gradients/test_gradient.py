@@ -51,7 +51,7 @@ def shares(found: Gradient, name: str, index: int = 0) -> Array:
 @pytest.mark.parametrize("near", [False, True], ids=["anywhere", "near a singular position"])
 @pytest.mark.parametrize(
     "count",
-    [1, slowly(10, reason="rare shapes"), at_length(220, reason="ten thousand mechanisms")],
+    [1, slowly(10, reason="rare shapes"), at_length(250, reason="ten thousand mechanisms")],
 )
 @pytest.mark.parametrize("form", few(ALL, OF_EACH_KIND, "one of each kind of dyad shows it"))
 def test_no_bound_is_broken(form: str, count: int, near: bool) -> None:
