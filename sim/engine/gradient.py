@@ -109,7 +109,7 @@ def places_after(opened: Opener, scene: Scene, state: State, steps: Sequence[int
     found = placed(scene, opened(scene, state).record(max(steps), every).poses.bodies)
     whole = np.full((max(steps) // every + 1, *found.shape[1:]), np.nan)
     whole[: len(found)] = found
-    return whole[np.array(steps) // every]
+    return np.asarray(whole[np.array(steps) // every])
 
 
 def steadiest(found: Sequence[Array]) -> Array:
