@@ -75,7 +75,8 @@ class VerifyRequest(VerifyOptions):
             task = bar.add_task("verifying", total=len(cells))
             jobs = self.jobs or int(self.worlds is not None)  # costs are of one run at a time
             checked = check_all(cells, jobs, lambda _: bar.advance(task))
-        checked = known.marked(checked, failing)
+        if self.worlds is None:  # known failures are those of runs alone
+            checked = known.marked(checked, failing)
         engines = dict.fromkeys(cell.engine for cell in cells)
         facts = provenance({name: engine(name).version() for name in engines})
         shows: list[Print] = [partial(show, checked=checked, facts=facts)]
@@ -186,9 +187,7 @@ def _sizes(request: VerifyOptions) -> list[int]:
     not have."""
     sizes = numbers("--worlds", request.worlds, int, "whole numbers", "1,16,256")
     for option in given(request, *NOT_IN_BATCHES) if sizes else ():
-        raise CrankcheckError(
-            f"--worlds and {option}: a batch runs the motion of driven scenes alone; leave out one"
-        )
+        raise CrankcheckError(f"--worlds and {option}: not offered for batches; leave out one")
     return batches.checked_sizes(sizes)
 
 
@@ -259,7 +258,10 @@ def _digests(request: VerifyRequest) -> dict[str, str]:
     return scene_digests(request.names)
 
 
-NOT_IN_BATCHES = ["baseline", "forces", "free", "duration_s", "segments", "springs", "write_known"]
+NOT_IN_BATCHES = [
+    *("baseline", "forces", "free", "duration_s", "segments", "springs"),
+    *("known", "strict_known", "write_known"),
+]
 IN_FOLDER = {
     "verify.csv": "--csv",
     "verify.json": "--json",

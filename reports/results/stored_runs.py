@@ -41,6 +41,8 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Stor
         No such folder, no stored run in it, one that can not be read, a version that it has not.
     """
     rows, run = _contents(folder)
+    if any(row.get("worlds") for row in rows):
+        raise CrankcheckError(f"{folder}: cells of batches (--worlds) are not compared")
     try:
         cells = [stored_cell(row, run.facts) for row in rows]
     except (KeyError, ValueError, OverflowError) as error:

@@ -12,6 +12,7 @@ from typing import Any, Self
 import numpy as np
 
 from models.array import Array
+from models.errors import EngineError
 from sim.engine import AT_ROUNDING, Batches
 from sim.engine.imported import imported
 from sim.engine.settings import shipped_engine
@@ -26,7 +27,10 @@ os.environ.setdefault(
 mjx = imported("mujoco.mjx")  # it imports Warp, where that is installed
 jax: Any = import_module("jax")  # so that types do not depend on what is installed
 jnp: Any = import_module("jax.numpy")
-CPU = jax.devices("cpu")[0]
+try:
+    CPU = jax.devices("cpu")[0]
+except (RuntimeError, AssertionError) as error:  # where JAX_PLATFORMS leaves it out
+    raise EngineError("engine mjx: JAX has no processor; add cpu to JAX_PLATFORMS") from error
 VERSION = version_of(version("mujoco-mjx"))
 MOST = 4000
 """Steps of a compiled loop at most: its arrays have one size, so that it is compiled once."""

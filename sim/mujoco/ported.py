@@ -58,8 +58,8 @@ class PortedSession(MujocoSession):
         self._stays = False
         if loads := self._loading.by_motion:
             raise EngineError(
-                f"{scene.name}: {', '.join(loads)} depends on the motion, and {self.name} is given "
-                "loads that time alone tells; run mujoco"
+                f"{scene.name}: {', '.join(loads)} depends on the motion, and {self.name} takes "
+                "loads of time alone; run mujoco"
             )
         try:
             with compiling():

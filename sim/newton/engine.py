@@ -70,7 +70,6 @@ class NewtonSession(HeavyDriverSession):
                 "the ground, prescribed"
             )
         super().__init__(scene, state, settings, dt_s, driven_by, 1)
-        self.end = (0.0, 0.0)
         self.rubbing, self.solver_name = [], str(settings["solver"])
         self.maximal = self.solver_name in MAXIMAL
         self.tree = planned(scene, state, delay_s=self.shift * dt_s)
@@ -122,6 +121,8 @@ class NewtonSession(HeavyDriverSession):
         whole = copy(one)
         whole.model = builder.finalize(device="cpu")
         whole._start(sessions)
+        for each in sessions:
+            each.begin()  # with the speed of its own instant
 
         def once() -> None:
             whole.advance()

@@ -37,7 +37,7 @@ def run_worlds(
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     if chosen.batches is None:
-        raise EngineError(f"{chosen.name} runs one world at a time; leave --worlds out")
+        raise EngineError(f"{chosen.name} runs one world at a time")
     opened = list[Opened]()
     for state in states:
         one = opened_run(scene, state, chosen, profile, **options)
@@ -53,6 +53,8 @@ def run_worlds(
     except Exception as error:  # as of one world
         reason = f"{type(error).__name__}: {error}"
         return [replace(one.blank, status="crashed", reason=reason) for one in opened]
+    if len(logs) > len(opened):
+        raise EngineError(f"{chosen.name}: {len(logs)} logs of {len(opened)} worlds")
     return [
         followed(one, [(blank.steps, [log].pop)], rates=rates)
         for one, log in zip(opened, logs, strict=False)

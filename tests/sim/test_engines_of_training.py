@@ -72,7 +72,7 @@ def test_loads_that_depend_on_the_motion_are_refused(name: str) -> None:
     scene = load_scene("compressor")
     refused = run(scene, start_of(scene), name, dt_s=1e-3, steps=10)
     assert refused.status == "unsupported"
-    assert f"{name} is given loads that time alone tells; run mujoco" in refused.reason
+    assert f"{name} takes loads of time alone; run mujoco" in refused.reason
 
 
 @slow(COMPILES)

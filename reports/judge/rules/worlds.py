@@ -49,6 +49,8 @@ class AsAlone:
         if batch.exact:
             return Finding(self.id, "pass", f"{of}: the same to the bit as alone", 0.0)
         text = f"world {batch.at} is {batch.difference:.2g} rad or L from its run alone"
+        if batch.difference == 0.0:
+            text = "places are those of runs alone, but not all rates"
         within = bool(batch.why) and batch.difference <= batch.bound
         return Finding(
             self.id,

@@ -129,9 +129,11 @@ class EngineMotions:
         scene = replace(scene, driver=replace(scene.driver, law=law))
         lead = next(name for name in dimensions(scene) if name.startswith("driver."))
         names = tuple(dict.fromkeys([*by, lead]))
-        asked = Question(scene, names, tuple(steps.tolist()), step / speed, "")
-        found = self._found(asked)
-        own, slopes = motions(asked.variation, found)
+        each, row = np.unique(steps, return_inverse=True)  # near rows may be of one step
+        asked = Question(scene, names, tuple(each.tolist()), step / speed, "")
+        own, slopes = motions(asked.variation, self._found(asked))
+        own = together(lambda series: series[row], own)
+        slopes = {n: together(lambda series: series[row], one) for n, one in slopes.items()}
         left = drive - (law.start_rad + step * steps)
         units = asked.units
 

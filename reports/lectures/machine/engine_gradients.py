@@ -7,7 +7,6 @@ unit of a dimension is the longest link, a radian, or the mass itself. So all nu
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
@@ -166,7 +165,6 @@ class EngineGradient:
     gaps: Mapping[str, Array] = field(default_factory=dict)
     astray: Array | None = None
     finer: Array | None = None
-    wall_s: float = 0.0
 
     @property
     def label(self) -> str:
@@ -284,8 +282,12 @@ def engine_gradients(
         for method in methods_of(name, with_runs=with_runs):
             try:
                 yield from _compared(blank, method, settings, with_order=with_order)
-            except EngineError as error:
+            except CrankcheckError as error:
+                if not isinstance(error, EngineError):
+                    raise
                 yield replace(blank, refusal=str(error))
+            except Exception as error:  # any error of an engine is a row of the result
+                yield replace(blank, refusal=f"{type(error).__name__}: {error}")
 
 
 def methods_of(name: str, *, with_runs: bool = False) -> list[Differentiated]:
@@ -302,12 +304,11 @@ def _compared(
     blank: EngineGradient, method: Differentiated, settings: Settings, *, with_order: bool
 ) -> Iterator[EngineGradient]:
     asked = blank.question
-    began = time.perf_counter()
     for found in method(asked.variation, settings, asked.dt_s, asked.steps):
         if found.refusal:
             yield replace(blank, method=found.method, refusal=found.refusal)
             continue
-        wall, finer = time.perf_counter() - began, None
+        finer = None
         if with_order:
             half = replace(asked, dt_s=0.5 * asked.dt_s, steps=(2 * asked.steps[-1],))
             again = method(half.variation, settings, half.dt_s, half.steps)
@@ -321,9 +322,7 @@ def _compared(
             gaps=gaps(asked.scene, poses_at(asked.scene, found.places)),
             astray=asked.astray(motion),
             finer=finer,
-            wall_s=wall,
         )
-        began = time.perf_counter()
 
 
 def _of_runs(

@@ -29,6 +29,7 @@ from reports.output.numbers import readable
 from reports.output.write import check_file, write
 from reports.requests.any_log import log_of
 from reports.requests.options import SceneName, argument, option
+from reports.requests.options import given as given_options
 
 ALIKE_S = 1e-9
 """Difference of instants that counts as none, over the length of a log."""
@@ -75,6 +76,8 @@ class FitRequest:
         given = dict(_given(scene, text) for text in self.given)
         log = log_of(scene, self.log, self.map)
         drive, readings = driven_readings(log)
+        for each in given_options(self, "profiles", "steps_per_turn") if not self.engines else ():
+            raise CrankcheckError(f"{each}: name an --engine")
         if self.engines and self.zeros:
             raise CrankcheckError("--zeros: an engine's fit takes sensors with a known zero")
         found = fit_lengths(scene, drive, readings, self.by, given, zeros=self.zeros)

@@ -26,13 +26,16 @@ from reports.output.formats import ENDINGS, json_text, write_frame
 from reports.output.numbers import readable
 from reports.output.write import check_file, write
 from reports.requests.arguments import SceneLike, is_true, scene_of, told_at_the_call
-from reports.requests.options import SceneName, option, output_option
+from reports.requests.options import SceneName, given, option, output_option
 from reports.requests.shown import Shown
 from reports.workers.progress import progress_bar
 
 if TYPE_CHECKING:
     import pandas as pd
 
+OF_EFFECTS = "tolerance_mm", "tolerance_deg"
+OF_ENGINES = "profiles", "steps", "steps_per_turn", "start_deg", "order", "runs"
+"""Fields that apply to effects alone, and to engines alone."""
 PICTURES = tuple(f".{kind}" for kind in DOTS_PER_IN)
 
 
@@ -145,10 +148,11 @@ class SensitivityRequest:
                 raise CrankcheckError(f"--tolerance-{name}: found {value:g}; give one above 0")
         kinds = (".html",) if self.engines else (*PICTURES, *ENDINGS)
         check_file(self.output, "-o", kinds, inputs=[find_scene(self.scene)])
+        for each in given(self, *(OF_EFFECTS if self.engines else OF_ENGINES)):
+            cure = "leave it out with --engine" if self.engines else "name an --engine"
+            raise CrankcheckError(f"{each}: {cure}")
         if self.engines:
             return self._compare(console, progress)
-        if self.profiles or self.start_deg is not None or self.order or self.runs:
-            raise CrankcheckError("--profile, --start-deg, --order, --runs: name an --engine")
         tolerances = 1e-3 * self.tolerance_mm, math.radians(self.tolerance_deg)
         found = effects(load_scene(self.scene), self.of, self.by, *tolerances)
         if self.output is not None:
@@ -178,6 +182,9 @@ class SensitivityRequest:
                 own = engine_gradients(question, [one], with_order=self.order, with_runs=self.runs)
                 found += own
                 advance()
+        if all(one.slopes is None for one in found):
+            reasons = dict.fromkeys(f"{one.label}: {one.refusal}" for one in found)
+            raise CrankcheckError(f"{scene.name}: no derivatives: {'; '.join(reasons)}")
         if self.output is not None:
             write(self.output, gradient_page(question, found))
         if self.json:
@@ -186,8 +193,6 @@ class SensitivityRequest:
             table.show(console, question, found)
             if self.output is not None:
                 say(console, f"{self.output}: gradients of {scene.name}")
-        if all(one.slopes is None for one in found):
-            raise CrankcheckError(f"{scene.name}: none of the engines has derivatives")
         return int(not all(one.within for one in found))
 
 

@@ -1,19 +1,25 @@
 """Batches on the command line: the verdict on all worlds, a row for each size, and refusals."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from analytic.kinematics import solve
+from models.errors import EngineError
 from models.files.reading import load_scene
 from reports.judge.cell import Cell, check, examined
 from reports.plan.batches import batch_length
 from reports.protocol.length import Length
 from reports.selftest.worlds import FAULTS
 from reports.ways.driven.faults import batch as in_batch
-from sim.registry import Fewer
+from sim.engine import Log
+from sim.registry import Fewer, engine
+from sim.run.worlds import run_worlds
 from tests.worlds.command_line import crank_alone, flat, refused
 
 FOURBAR = load_scene("fourbar-lecture-1")
@@ -70,6 +76,25 @@ def test_a_faulty_batch_is_seen_and_a_sound_one_passes(fault: Any) -> None:
     assert all(word in found.text for word in fault.says)
 
 
+def test_stored_batches_are_no_baseline_of_runs_alone(tmp_path: Path) -> None:
+    words = ["verify", "fourbar-lecture-1", "--engine", "mujoco", "--steps-per-turn", "90"]
+    assert crank_alone(*words, "--worlds", "2", "-o", tmp_path / "kept").exit_code == 0
+    told = crank_alone(*words, "--turns", "1", "--baseline", tmp_path / "kept")
+    refused(told, "cells of batches (--worlds) are not compared")
+
+
+def test_more_logs_than_worlds_are_refused() -> None:
+    motion = solve(FOURBAR, np.zeros(1))
+    own = engine("mujoco")
+
+    def doubled(*asked: Any) -> Sequence[Log]:
+        return [*own.batches.record(*asked)] * 2
+
+    wrong = replace(own, batches=replace(own.batches, record=doubled))
+    with pytest.raises(EngineError, match="mujoco: 2 logs of 1 worlds"):
+        run_worlds(FOURBAR, [motion.state()], wrong, dt_s=1e-3, steps=10)
+
+
 def test_no_log_at_all_is_a_crash() -> None:
     cell = in_batch(FOURBAR, "mujoco", 90, converge=False)
     lost, _ = examined(cell, lambda *_, **__: [])
@@ -91,8 +116,9 @@ def test_an_engine_without_batches_is_unsupported_and_only_where_it_is_named() -
     [
         (("--worlds", "0"), "--worlds: found 0; a batch has 1 to"),
         (("--worlds", "2,x"), "write whole numbers with commas between, such as 1,16,256"),
-        (("--worlds", "2", "--forces"), "--worlds and --forces: a batch runs the motion"),
+        (("--worlds", "2", "--forces"), "--worlds and --forces: not offered for batches"),
         (("--worlds", "2", "--baseline", "nowhere"), "--worlds and --baseline"),
+        (("--worlds", "2", "--known", "known.toml"), "--worlds and --known"),
         (("double-pendulum", "--worlds", "2"), "is in free motion or elastic"),
     ],
 )

@@ -149,13 +149,26 @@ def test_a_wrong_gradient_ends_with_1_and_none_with_2(monkeypatch: pytest.Monkey
     monkeypatch.setattr(engine_gradients, "methods_of", lambda name, with_runs: [none])
     answer = crank_alone(*LINE)
     assert answer.exit_code == 2
-    assert "none of the engines has derivatives" in " ".join(answer.stderr.split())
+    assert "no derivatives: " in " ".join(answer.stderr.split())
+
+
+def test_an_error_of_an_engine_is_the_reason_why_it_has_no_derivatives(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def broken(*given: object) -> Iterator[PoseGradient]:
+        raise RuntimeError("boom in step")
+
+    monkeypatch.setattr(engine_gradients, "methods_of", lambda name, with_runs: [broken])
+    answer = crank_alone(*LINE)
+    assert answer.exit_code == 2
+    assert "RuntimeError: boom in step" in " ".join(answer.stderr.split())
 
 
 @pytest.mark.parametrize(("line", "words"), [
     (("--steps", "1,x"), "--steps '1,x': write whole numbers from 1"),
     (("--profile", "tunde"), "did you mean tuned"),
     (("--of", "lid"), "--of lid: there are"),
+    (("--tolerance-mm", "7"), "--tolerance-mm: leave it out with --engine"),
 ])  # fmt: skip
 def test_faulty_requests_end_with_2(line: tuple[str, str], words: str) -> None:
     answer = crank_alone(*LINE, *line)

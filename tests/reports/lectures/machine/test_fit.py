@@ -86,6 +86,21 @@ def test_an_engine_ends_where_the_reference_does(tmp_path: Path) -> None:
         assert 1e-8 < abs(other["fitted"] / own["fitted"] - 1.0) < 3e-2
 
 
+def test_rows_of_one_step_are_fitted_as_others(tmp_path: Path) -> None:
+    theta = np.linspace(0.3, 0.9, 40)  # ten rows of each step of the engine
+    motion = solve_driven(REAL, theta, np.ones(1), np.zeros(1), bound=False)
+    log = tmp_path / "sparse.csv"
+    columns = {"crank_rad": theta, "rocker_rad": motion.links["rocker"].theta}
+    pd.DataFrame(columns).to_csv(log, index=False)
+    line = ("fit", "fourbar-lecture-1", str(log), "--by", "rocker", "--steps-per-turn", "24")
+    answer = crank_alone(*line, "--engine", "mujoco", "--json")
+    reference, own = json.loads(answer.stdout)["by_source"]
+    fitted = [one["dimensions"][0]["fitted"] for one in (reference, own)]
+    assert fitted[1] == pytest.approx(fitted[0], rel=0.05)
+    refused = crank_alone(*line)
+    assert (refused.exit_code, refused.stderr.count("name an --engine")) == (2, 1)
+
+
 def test_an_engine_needs_a_driver_that_turns_one_way(tmp_path: Path) -> None:
     theta = 1.0 + 0.5 * np.sin(np.linspace(0.0, 6.0, 60))
     log = tmp_path / "swings.csv"
