@@ -28,6 +28,7 @@ from models.motion import Forces, SliderForces, State
 from models.scene import Scene
 from models.scene.joints import bodies, joined_at
 from sim.engine import (
+    Batches,
     BodyPose,
     Drive,
     Engine,
@@ -207,11 +208,18 @@ def watched(spelling: str, engine: Engine) -> Engine:
         assert engine.batches is not None
         own = [one.session for one in sessions]
         logs = engine.batches.record(own, steps, every, threads)
+        if not isinstance(logs, Sequence) or len(logs) > len(own):
+            raise place.fault("batches.record", f"gave not a log for each of {len(own)} worlds")
         return [
             one.checked("batches.record", log, steps // every + 1)
             for one, log in zip(sessions, logs, strict=False)
         ]
 
+    batches: object = engine.batches
+    if batches is not None:
+        threads = getattr(batches, "threads", 0)
+        if not isinstance(batches, Batches) or not isinstance(threads, int) or threads < 1:
+            raise place.fault("batches", "is no Batches that takes one thread or more")
     return replace(
         engine,
         batches=engine.batches and replace(engine.batches, record=together),

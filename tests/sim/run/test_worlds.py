@@ -102,3 +102,19 @@ def test_logs_of_an_engine_of_a_user_are_checked_one_by_one() -> None:
     assert [one.status for one in sound] == ["ok", "ok"]
     with pytest.raises(BrokenContractError, match=r"batches\.record gave 20 samples"):
         run_worlds(*asked, watched("own:ENGINE", recording(short)), **options(FOURBAR))
+
+
+@pytest.mark.parametrize("given", [7, Batches(MUJOCO.batches.record, threads=0)])
+def test_a_user_s_batches_are_checked_when_the_engine_is_read(given: Any) -> None:
+    with pytest.raises(BrokenContractError, match="batches is no Batches that takes one thread"):
+        watched("own:ENGINE", replace(MUJOCO, batches=given))
+
+
+@pytest.mark.parametrize("count", [0, 2])
+def test_a_user_s_batch_gives_at_most_one_log_for_each_world(count: int) -> None:
+    def record(*asked: Any) -> Any:
+        return [*MUJOCO.batches.record(*asked)] * count if count else None
+
+    own = watched("own:ENGINE", recording(record))
+    with pytest.raises(BrokenContractError, match="gave not a log for each of 2 worlds"):
+        run_worlds(FOURBAR, starts(FOURBAR, 2), own, **options(FOURBAR))
