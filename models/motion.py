@@ -197,16 +197,17 @@ class Motion:
     forces: Forces | None = None
     elastic: Mapping[str, ElasticMotion] = field(default_factory=dict)
 
-    def each_series(self, change: Callable[[Array], Array]) -> Motion:
-        """Return the motion with every series of its bodies changed; its instants stay."""
-        return replace(
-            self,
-            links=each_array(change, self.links),
-            points=each_array(change, self.points),
-            sliders=each_array(change, self.sliders),
-            elastic=each_array(change, self.elastic),
-            forces=self.forces and self.forces.each_series(change),
-        )
+    def each_series(self, change: Callable[..., Array], *others: Motion) -> Motion:
+        """Return the motion with every series of its bodies changed, by those of ``others`` as
+        further arguments; its instants stay."""
+        every = (self, *others)
+        series = {
+            name: each_array(change, *(getattr(one, name) for one in every))
+            for name in ("links", "points", "sliders", "elastic")
+        }
+        acting = [one.forces for one in every if one.forces]
+        forces = acting[0].each_series(change, *acting[1:]) if len(acting) == len(every) else None
+        return replace(self, **series, forces=forces)
 
     @staticmethod
     def joined(parts: Sequence[Motion]) -> Motion:

@@ -18,7 +18,7 @@ from models.errors import CrankcheckError
 from models.motion import State
 from models.scene import Scene
 from models.scene.joints import bodies
-from sim.engine import BodyPose, Session, Settings
+from sim.engine import BodyPose, Drive, Session, Settings
 
 OFFSETS, WEIGHTS = (-2.0, -1.0, 1.0, 2.0), (1 / 12, -2 / 3, 2 / 3, -1 / 12)
 """Central difference of fourth order, in steps."""
@@ -26,7 +26,8 @@ STEP = 1e-4
 """Its step for what is exact to rounding, in units of a dimension: rounding leaves 1e-12."""
 SWEEP = tuple(10.0 ** (-0.5 * n) for n in range(2, 13))
 """Steps from which the best is chosen for the runs of an engine, in units of a dimension."""
-Opener = Callable[[Scene, State], Session]
+Opener = Callable[[Scene, State, Settings, float, Drive], Session]
+"""Opening of a session, as `Engine.open`."""
 
 
 @dataclass(frozen=True)
@@ -77,36 +78,38 @@ def placed(scene: Scene, poses: Mapping[str, BodyPose]) -> Array:
     return np.stack([np.column_stack([one.origin, one.theta]) for one in own], axis=1)
 
 
-def differences(opened: Opener, variation: Variation, steps: Sequence[int]) -> PoseGradient:
+def differences(
+    opened: Opener, variation: Variation, settings: Settings, dt_s: float, steps: Sequence[int]
+) -> PoseGradient:
     """Differentiate whole runs by differences, each at the step of the sweep where it changes
     least from one to the next."""
+
+    def after(scene: Scene, state: State) -> Array:
+        return places_after(opened(scene, state, settings, dt_s, "prescribed"), scene, steps)
+
     by = {}
     for name in variation.names:
         found: list[Array] = []
         for step in SWEEP:
-            if (
-                len(found) > 3
-                and (changes(found)[-2:].min(axis=0) > changes(found)[:-2].min(axis=0)).all()
-            ):
-                break  # rounding grows
+            if len(found) > 3:
+                change = changes(found)
+                if (change[-2:].min(axis=0) > change[:-2].min(axis=0)).all():
+                    break  # rounding grows
             try:
-                near = [
-                    places_after(opened, *one, steps) for one in variation.neighbours(name, step)
-                ]
+                near = [after(*one) for one in variation.neighbours(name, step)]
             except CrankcheckError:  # too far to be assembled
                 continue
             found.append(slope(near, step))
         if len(found) > 1:
             by[name] = steadiest(found)
-    places = places_after(opened, variation.scene, variation.state, steps)
-    return PoseGradient("differences of runs", places, by)
+    return PoseGradient("differences of runs", after(variation.scene, variation.state), by)
 
 
-def places_after(opened: Opener, scene: Scene, state: State, steps: Sequence[int]) -> Array:
+def places_after(session: Session, scene: Scene, steps: Sequence[int]) -> Array:
     """Return the places of all bodies after some steps, (K, B, 3), not numbers after the end of a
     run that ends before."""
     every = math.gcd(*steps)
-    found = placed(scene, opened(scene, state).record(max(steps), every).poses.bodies)
+    found = placed(scene, session.record(max(steps), every).poses.bodies)
     whole = np.full((max(steps) // every + 1, *found.shape[1:]), np.nan)
     whole[: len(found)] = found
     return np.asarray(whole[np.array(steps) // every])

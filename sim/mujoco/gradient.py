@@ -106,11 +106,7 @@ def gradient(
         every = [transitions(start, names, steps, eps) for eps in SWEEP]
         best = steadiest([by for _, by in every])
         yield start.result(method, every[0][0], {n: best[:, :, i] for i, n in enumerate(names)})
-
-    def opened(scene: Scene, state: State) -> MujocoSession:
-        return MujocoSession(scene, state, settings, dt_s, "prescribed")
-
-    yield differences(opened, variation, steps)
+    yield differences(MujocoSession, variation, settings, dt_s, steps)
 
 
 GRADIENT = gradient

@@ -176,9 +176,8 @@ def offering(what: Capability) -> list[str]:
 
 def _loaded(name: str, part: str) -> object:
     own = declaration(name)
-    absent = EngineError(f"engine {name}: not installed; {install_command(name)}")
     if part == "engine" and not all(map(find_spec, own.roots)):  # sooner than by its imports
-        raise absent
+        raise _not_installed(name)
     try:
         module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)
     except Exception as error:
@@ -189,8 +188,12 @@ def _loaded(name: str, part: str) -> object:
         lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
         if (lacking or own.package).split(".")[0] not in own.roots:
             raise
-        raise absent from None
+        raise _not_installed(name) from None
     return getattr(module, part.upper())
+
+
+def _not_installed(name: str) -> EngineError:
+    return EngineError(f"engine {name}: not installed; {install_command(name)}")
 
 
 def _refuse_broken(name: str, own: Declaration) -> None:

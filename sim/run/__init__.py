@@ -202,9 +202,9 @@ def run(
         leaves under 8 steps in a period (`sim.engine.drive.period`), or a model in the engine that
         is not the scene; a user's own engine that breaks its contract.
     """
-    told: Any = {"dt_s": dt_s, "steps": steps, "every": every, "drive": drive}
-    told |= {"settings": settings, "with_forces": with_forces}
-    opened = opened_run(scene, state, engine, profile, open_m, **told)
+    options: Any = {"dt_s": dt_s, "steps": steps, "every": every, "drive": drive}
+    options |= {"settings": settings, "with_forces": with_forces}
+    opened = opened_run(scene, state, engine, profile, open_m, **options)
     return recorded(opened, rates=rates) if isinstance(opened, Opened) else opened
 
 
@@ -218,24 +218,24 @@ def opened_run(
 ) -> Opened | Run:
     """Return the session of `run` at its start, looked at; or the run that it can not begin."""
     chosen = engine_of(engine) if isinstance(engine, str) else engine
-    told = setup(scene, state, chosen, profile, **options)
-    dt_s, steps, drive = told.dt_s, told.steps, told.drive
-    check_steps(scene, period(scene, state, drive), dt_s, steps, told.every)
-    blank = Run(**vars(told), status="ok", reason="", settings=told.asked)
+    requested = setup(scene, state, chosen, profile, **options)
+    dt_s, steps, drive = requested.dt_s, requested.steps, requested.drive
+    check_steps(scene, period(scene, state, drive), dt_s, steps, requested.every)
+    blank = Run(**vars(requested), status="ok", reason="", settings=requested.asked)
     if scene.elastic:
         raise EngineError(
             f"{scene.name}: {', '.join(scene.elastic)} bends, and an engine gets rigid segments "
             "for it: `models.scene.cut_scenes.SegmentedScene(scene, count).rigid`"
         )
     try:
-        refuse_unknown_forces(scene, chosen, with_forces=told.with_forces, applying=applying)
-        session = chosen.open(scene, state, told.asked, dt_s, drive)
+        refuse_unknown_forces(scene, chosen, with_forces=requested.with_forces, applying=applying)
+        session = chosen.open(scene, state, requested.asked, dt_s, drive)
     except (SettingError, BrokenContractError):
         raise
     except EngineError as error:
         return replace(blank, status="unsupported", reason=str(error))
     facts = session.facts()
-    refuse_other_model(scene, state, facts, dt_s, drive, open_m, told.precision)
+    refuse_other_model(scene, state, facts, dt_s, drive, open_m, requested.precision)
     # Later loads may move a scene that almost rests: a radian in the whole run, at least.
     own = pace(scene, state, drive)
     runaway = RUNAWAY * max(own, 1.0 / (dt_s * steps)) if own else math.inf

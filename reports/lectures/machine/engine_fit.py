@@ -29,7 +29,7 @@ from models.motion import Motion
 from models.scene import Scene
 from models.scene.laws import ConstantSpeed
 from reports.lectures.machine.engine_gradients import Question, methods_of
-from reports.lectures.machine.engine_motions import motions, together
+from reports.lectures.machine.engine_motions import motions
 from sim.engine.gradient import PoseGradient
 from sim.engine.settings import profile_of, resolved
 from sim.registry import engine
@@ -132,15 +132,15 @@ class EngineMotions:
         each, row = np.unique(steps, return_inverse=True)  # near rows may be of one step
         asked = Question(scene, names, tuple(each.tolist()), step / speed, "")
         own, slopes = motions(asked.variation, self._found(asked))
-        own = together(lambda series: series[row], own)
-        slopes = {n: together(lambda series: series[row], one) for n, one in slopes.items()}
+        own = own.each_series(lambda series: series[row])
+        slopes = {n: by.each_series(lambda series: series[row]) for n, by in slopes.items()}
         left = drive - (law.start_rad + step * steps)
         units = asked.units
 
         def made_up(series: Array, slope: Array) -> Array:
             return np.asarray(series + left.reshape(-1, *[1] * (series.ndim - 1)) * slope)
 
-        own = together(made_up, own, slopes[lead])
+        own = own.each_series(made_up, slopes[lead])
         return own, {n: slopes[n].each_series(partial(np.multiply, 1.0 / units[n])) for n in by}
 
     def _found(self, asked: Question) -> PoseGradient:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from models.errors import CrankcheckError, EngineError
 from models.motion import Bound, Motion, State
 from models.scene import Scene
 from reports.lectures.machine.engine_motions import columns, motions, poses_at
-from sim.engine import Engine, Session, Settings
+from sim.engine import Engine, Settings
 from sim.engine.gradient import Differentiated, PoseGradient, Variation, differences
 from sim.engine.measure import gaps
 from sim.engine.settings import profile_of, resolved
@@ -237,7 +237,7 @@ class EngineGradient:
             text.append(f"links elsewhere, by up to {self.astray[k]:.2g} rad")
         return text
 
-    def rows(self) -> Iterator[dict[str, object]]:
+    def rows(self) -> Iterator[dict[str, Any]]:
         """Return the comparison after each number of steps."""
         if self.slopes is None:
             return
@@ -262,12 +262,13 @@ class EngineGradient:
 
 def engine_gradients(
     question: Question,
-    choices: Sequence[tuple[str, str]],
+    name: str,
+    profile: str,
     *,
     with_order: bool = False,
     with_runs: bool = False,
 ) -> Iterator[EngineGradient]:
-    """Differentiate in engines with profiles, one result for each method; ``with_runs`` by
+    """Differentiate in an engine with a profile, one result for each method; ``with_runs`` by
     differences of whole runs too, where an engine has derivatives of its own.
 
     Raises
@@ -275,19 +276,18 @@ def engine_gradients(
     EngineError
         An engine that is unknown or not installed, or an unknown profile.
     """
-    for name, profile in choices:
-        chosen = engine(name)
-        settings = resolved(profile_of(chosen, profile), None)
-        blank = EngineGradient(question, chosen.name, chosen.version(), profile, "")
-        for method in methods_of(name, with_runs=with_runs):
-            try:
-                yield from _compared(blank, method, settings, with_order=with_order)
-            except CrankcheckError as error:
-                if not isinstance(error, EngineError):
-                    raise
-                yield replace(blank, refusal=str(error))
-            except Exception as error:  # any error of an engine is a row of the result
-                yield replace(blank, refusal=f"{type(error).__name__}: {error}")
+    chosen = engine(name)
+    settings = resolved(profile_of(chosen, profile), None)
+    blank = EngineGradient(question, chosen.name, chosen.version(), profile, "")
+    for method in methods_of(name, with_runs=with_runs):
+        try:
+            yield from _compared(blank, method, settings, with_order=with_order)
+        except EngineError as error:
+            yield replace(blank, refusal=str(error))
+        except CrankcheckError:
+            raise
+        except Exception as error:  # any error of an engine is a row of the result
+            yield replace(blank, refusal=f"{type(error).__name__}: {error}")
 
 
 def methods_of(name: str, *, with_runs: bool = False) -> list[Differentiated]:
@@ -328,7 +328,4 @@ def _compared(
 def _of_runs(
     chosen: Engine, variation: Variation, settings: Settings, dt_s: float, steps: Sequence[int]
 ) -> Iterator[PoseGradient]:
-    def opened(scene: Scene, state: State) -> Session:
-        return chosen.open(scene, state, settings, dt_s, "prescribed")
-
-    yield differences(opened, variation, steps)
+    yield differences(chosen.open, variation, settings, dt_s, steps)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-
 import numpy as np
 
 from models.array import Array
-from models.motion import Bound, Motion, each_array
+from models.motion import Bound, Motion
 from models.scene import Scene
 from models.scene.joints import bodies
 from sim.engine import BodyPose, Poses
@@ -36,15 +33,8 @@ def motions(variation: Variation, found: PoseGradient) -> tuple[Motion, dict[str
             measured(scene, poses_at(scene, found.places + offset * STEP * by), rates=False)
             for offset, (scene, _) in zip(OFFSETS, variation.neighbours(name), strict=True)
         ]
-        slopes[name] = together(lambda *values: slope(values), *near)
+        slopes[name] = near[0].each_series(lambda *values: slope(values), *near[1:])
     return measured(variation.scene, poses_at(variation.scene, found.places), rates=False), slopes
-
-
-def together(change: Callable[..., Array], *each: Motion) -> Motion:
-    """Return a motion of whose series each is made of those of several."""
-    kinds = ("links", "points", "sliders")
-    changed = {k: each_array(change, *(getattr(one, k) for one in each)) for k in kinds}
-    return replace(each[0], **changed)
 
 
 def poses_at(scene: Scene, places: Array) -> Poses:

@@ -264,8 +264,9 @@ def _show_ends(console: Console, ends: Sequence[FitEnd]) -> None:
         if end.found is None:
             cells.append([*line, *["none"] * (len(heads) - 3)])
             continue
+        fitted = {str(row["name"]): row["fitted"] for row in _rows(end.found)}
         for name, row in reference.items():
-            own = next(each["fitted"] for each in _rows(end.found) if each["name"] == name)
+            own = fitted[name]
             off = readable(own - row["fitted"], 2)
             line.append(f"{own:.7g} {row['unit']}" if end is ends[0] else f"{off} {row['unit']}")
         rms = max(float(np.sqrt(np.mean(r**2))) for r in end.found.residuals)

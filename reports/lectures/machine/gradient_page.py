@@ -35,9 +35,9 @@ def gradient_page(question: Question, found: Sequence[EngineGradient]) -> str:
             "height": ROW * len(question.names) + 8.0,
             "engines": [_engine(question, one) for one in compared],
             "rows": [
-                {**row, "angle": angle_text(one.angle(k)), "size": short(one.error(k))}
+                {**row, "angle": angle_text(row["angle_rad"]), "size": short(row["error"])}
                 for one in compared
-                for k, row in enumerate(one.rows())
+                for row in one.rows()
             ],
             "refused": [
                 (one.label, one.method, sentence_text(one.refusal)) for one in found if one.refusal

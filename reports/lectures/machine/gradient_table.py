@@ -94,16 +94,11 @@ def show(console: Console, question: Question, found: Sequence[EngineGradient]) 
     for one in found:
         for row in one.rows():
             line = [one.engine, one.profile, one.method, str(row["steps"])]
-            line += [short(float(str(row["error"]))), str(row["dimension"])]
-            line.append(angle_text(float(str(row["angle_rad"]))))
+            line += [short(row["error"]), row["dimension"], angle_text(row["angle_rad"])]
             if "order:" in heads:
-                order = float(str(row["order"]))
-                line.append("" if math.isnan(order) else f"{order:.2f}")
-            marks = [
-                "" if row["within"] else "OUT",
-                *one.findings(question.steps.index(row["steps"])),
-            ]
-            cells.append([*line, "; ".join(mark for mark in marks if mark)])
+                line.append("" if math.isnan(row["order"]) else f"{row['order']:.2f}")
+            marks = ["OUT"] * (not row["within"]) + row["findings"]
+            cells.append([*line, "; ".join(marks)])
     console.print(grid(heads, cells, whole=("engine", "profile", "method"), wraps=True))
     say(console, "")
     sizes = map(readable, question.sizes.tolist())

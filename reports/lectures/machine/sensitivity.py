@@ -157,13 +157,12 @@ class SensitivityRequest:
         found = effects(load_scene(self.scene), self.of, self.by, *tolerances)
         if self.output is not None:
             _write(found, self.output)
-        told = f"{self.output}: effects on {found.of} of {found.gradient.scene.name}"
         if self.json:
             facts = {"scene": found.gradient.scene.name, "of": found.of, "unit": found.unit}
             rows = {"dimensions": found.rows(), "locked": list(found.gradient.locked)}
             console.file.write(json_text({**facts, **rows}))
         elif self.output is not None:
-            say(console, told)
+            say(console, f"{self.output}: effects on {found.of} of {found.gradient.scene.name}")
         else:
             show_effects(console, found)
         return 0
@@ -178,9 +177,9 @@ class SensitivityRequest:
         question = table.asked(scene, self.of, self.by, *manner)
         choices, found = table.chosen(self.engines, self.profiles), list[EngineGradient]()
         with progress_bar(progress, "engines", len(choices)) as advance:
-            for one in choices:
-                own = engine_gradients(question, [one], with_order=self.order, with_runs=self.runs)
-                found += own
+            for name, profile in choices:
+                how = {"with_order": self.order, "with_runs": self.runs}
+                found += engine_gradients(question, name, profile, **how)
                 advance()
         if all(one.slopes is None for one in found):
             reasons = dict.fromkeys(f"{one.label}: {one.refusal}" for one in found)

@@ -30,7 +30,7 @@ LINE = ("sensitivity", "fourbar-lecture-1", "--engine", "mujoco", "--by", "crank
 
 
 def compared(name: str, profile: str, question: Question = QUESTION) -> list[EngineGradient]:
-    return list(engine_gradients.engine_gradients(question, [(name, profile)]))
+    return list(engine_gradients.engine_gradients(question, name, profile))
 
 
 @pytest.fixture(scope="module")
